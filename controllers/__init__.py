@@ -1,0 +1,1 @@
+"""The algorithms: numpy in, numpy out; they know no MuJoCo and no study."""
