@@ -4,7 +4,13 @@ Names are imported when first used, so that ``import mjmr`` loads no MuJoCo.
 """
 
 import importlib
+import os
+import sys
 from typing import Any
+
+# MuJoCo picks its off-screen GL when it is first imported; without a display only EGL works.
+if sys.platform == "linux" and not os.environ.get("DISPLAY"):
+    os.environ.setdefault("MUJOCO_GL", "egl")
 
 _WHERE = {
     "Film": "mjmr.film",

@@ -2,6 +2,7 @@
 
 import difflib
 from collections.abc import Iterable
+from typing import Any
 
 
 class MjmrError(Exception):
@@ -35,7 +36,13 @@ class TruthError(MjmrError):
 
 
 class SimulationDivergedError(MjmrError):
-    """The physics left the finite or plausible range; the message says where and when."""
+    """The physics left the finite or plausible range; the message says where and when.
+
+    Attributes:
+        snapshots: States of about the last second before it, oldest first.
+    """
+
+    snapshots: tuple[Any, ...] = ()
 
 
 class MissingGLError(MjmrError):

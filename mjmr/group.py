@@ -1,0 +1,179 @@
+"""Group: n robots of one platform as arrays."""
+
+from collections import deque
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mjmr.errors import InvalidInputError, UnknownNameError
+from mjmr.faults import FaultSchedule
+from mjmr.robots.markings import TEAM_COLOURS
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from mjmr.robots.platform import Platform
+    from mjmr.sensors.base import Sensor
+    from mjmr.sensors.localizer import Localizer
+
+Array = NDArray[np.float64]
+
+
+class Group:
+    """n robots of one platform; every array has the leading axis n.
+
+    Attributes:
+        n: Number of robots.
+        platform: What they are.
+        start: Start poses (n, 3) [m, m, rad], world frame.
+        names: ``name0 ...``.
+        faults: What goes wrong, and when.
+        clamped: Commands scaled down to the platform's limits so far, shape (n,).
+    """
+
+    localizer: "Localizer"
+
+    def __init__(
+        self,
+        platform: "Platform",
+        poses: ArrayLike,
+        *,
+        name: str,
+        team: str = "yellow",
+        first_number: int = 0,
+        command_latency: int = 0,
+    ):
+        """Declare the group; :meth:`mjmr.world.World.add_group` calls this.
+
+        Args:
+            platform: The platform.
+            poses: Start poses, shape (n, 3).
+            name: Prefix of the robots' names.
+            team: One of the team colours.
+            first_number: Number painted on the first robot.
+            command_latency: Control periods between :meth:`drive` and the drive's obeying.
+
+        Raises:
+            InvalidInputError: Poses of another shape or not finite, or a negative latency.
+            UnknownNameError: Unknown team.
+        """
+        start = np.array(poses, dtype=np.float64)
+        if start.ndim != 2 or start.shape[1] != 3 or not len(start):
+            raise InvalidInputError(f"poses must have shape (n, 3), n >= 1; got {start.shape}")
+        if not np.isfinite(start).all():
+            raise InvalidInputError("poses must be finite")
+        if command_latency < 0 or command_latency != int(command_latency):
+            raise InvalidInputError(
+                f"command_latency counts control periods, 0 or more; got {command_latency}"
+            )
+        if team not in TEAM_COLOURS:
+            raise UnknownNameError("team", team, TEAM_COLOURS)
+        start.setflags(write=False)
+        self.platform, self.start, self.n, self.name = platform, start, len(start), name
+        self.team, self.first_number = team, first_number
+        self.command_latency = int(command_latency)
+        self.names = tuple(f"{name}{i}" for i in range(self.n))
+        self.faults = FaultSchedule(self.n)
+        self.sensors: dict[str, Sensor] = {}
+        for key, sensor in platform.default_sensors().items():
+            self.mount(sensor, key)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget commands; called when a simulation takes the group."""
+        self.clamped = np.zeros(self.n, dtype=np.int64)
+        self._command = np.zeros((self.n, 3))
+        self._executed = np.zeros((self.n, 3))
+        self._pending = deque([self._command] * self.command_latency)
+
+    def mount(self, sensor: "Sensor", name: str | None = None) -> Any:
+        """Mount a sensor on every robot and make it ``group.<name>``.
+
+        A platform's default sensor of the same name is replaced.
+
+        Args:
+            sensor: The sensor, not mounted elsewhere.
+            name: Default: the sensor's own name.
+
+        Returns:
+            The sensor.
+        """
+        key = name or sensor.name
+        if key in self.sensors and self.sensors[key].name != sensor.name:
+            raise InvalidInputError(f"group {self.name!r} has another sensor named {key!r}")
+        self.sensors[key] = sensor
+        setattr(self, key, sensor)
+        return sensor
+
+    def drive(self, command: ArrayLike) -> None:
+        """Radio a command to every robot; it holds until the next one.
+
+        Each drive ramps linearly from its present command to this one over one control period.
+        Commands over the platform's limits are scaled down and counted in ``clamped``.
+
+        Args:
+            command: Twists, shape (n, 3): forward and left [m/s], anticlockwise [rad/s], body
+                frame.
+
+        Raises:
+            InvalidInputError: Another shape, or NaN or infinity (names the robots).
+        """
+        twist = np.array(command, dtype=np.float64)
+        if twist.shape != (self.n, 3):
+            raise InvalidInputError(
+                f"{self.name}: a command must have shape ({self.n}, 3); got {twist.shape}"
+            )
+        if not np.isfinite(twist).all():
+            bad = np.flatnonzero(~np.isfinite(twist).all(axis=1))
+            names = ", ".join(self.names[i] for i in bad)
+            raise InvalidInputError(f"a command must be finite; it is not for {names}")
+        allowed = self.platform.clamp(twist)
+        if allowed is not twist:
+            self.clamped += (allowed != twist).any(axis=1)
+        self._command = allowed
+
+    @property
+    def executed(self) -> Array:
+        """Twist the drives have ramped to, (n, 3), body frame: each robot's own telemetry."""
+        view = self._executed.view()
+        view.setflags(write=False)
+        return view
+
+    def next_ramp(self, time: float, period: float) -> tuple[Array, Array]:
+        """Start and end of the ramp of the control period that begins at ``time``; for simulations.
+
+        Returns:
+            Two arrays (n, 3), body frame; latency and faults applied.
+        """
+        target = self._command
+        if self.command_latency:
+            self._pending.append(target)
+            target = self._pending.popleft()
+        braked = self.faults.braked(time)
+        if braked is not None:
+            stop = self.platform.brake(self._executed, period)
+            target = np.where(braked[:, None], stop, target)
+        start, self._executed = self._executed, target
+        return start, target
+
+    def state(self) -> tuple[Any, ...]:
+        """What :meth:`next_ramp` depends on, for snapshots."""
+        return self._command, self._executed, tuple(self._pending), self.clamped.copy()
+
+    def set_state(self, state: tuple[Any, ...]) -> None:
+        """Put back what :meth:`state` returned."""
+        self._command, self._executed, pending, clamped = state
+        self._pending, self.clamped = deque(pending), clamped.copy()
+
+    def add_to(self, spec: "mujoco.MjSpec") -> None:
+        """Attach every robot to ``spec`` under the prefix ``name<i>/``."""
+        for i in range(self.n):
+            robot = self.platform.model(self.first_number + i, self.team)
+            frame = spec.worldbody.add_frame()
+            spec.attach(robot, prefix=f"{self.names[i]}/", frame=frame)
+
+    @property
+    def prefixes(self) -> list[str]:
+        """MJCF name prefixes of the robots."""
+        return [f"{name}/" for name in self.names]

@@ -1,0 +1,108 @@
+"""KinematicSimulation: commands executed exactly, no contact, no MuJoCo.
+
+It serves what a paper itself simulated without dynamics; every table names it where it was used.
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mjmr.geometry import wrap_angle
+from mjmr.loop import TickedSimulation
+
+if TYPE_CHECKING:
+    from mjmr.group import Group
+    from mjmr.world import World
+
+Array = NDArray[np.float64]
+# Gauss-Legendre, five points on [0, 1]: exact for a ramp without turning, 1e-12 m with it
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
+_NODES, _WEIGHTS = (_NODES + 1) / 2, _WEIGHTS / 2
+
+
+class KinematicSimulation(TickedSimulation):
+    """Every robot's twist ramps linearly, in its body frame, to its command in one period.
+
+    Bodies pass through each other, walls and boxes; free props stay where they are.
+    """
+
+    def __init__(
+        self,
+        world: "World",
+        *,
+        seed: int = 0,
+        control_period: float = 1 / 60,
+        dt_max: float = 0.005,
+    ):
+        """Start at the groups' start poses, at rest.
+
+        Args:
+            world: What is simulated.
+            seed: Of every random stream of the trial.
+            control_period: Between two ticks [s].
+            dt_max: Sensors are sampled on a grid of at most this step [s].
+        """
+        super().__init__(world, seed=seed, control_period=control_period, dt_max=dt_max)
+        team = self.team
+        self._rows = {id(g): team.rows(g) for g in team.groups}
+        self._pose = team.stack([g.start for g in team.groups]).copy()
+        self._twist = np.zeros_like(self._pose)
+        self._rate = np.zeros_like(self._pose)
+        self._bind()
+
+    def poses_of(self, group: "Group") -> Array:
+        """True poses (n, 3)."""
+        return self._pose[self._rows[id(group)]].copy()
+
+    def twists_of(self, group: "Group") -> Array:
+        """True twists (n, 3), body frame."""
+        return self._twist[self._rows[id(group)]].copy()
+
+    def mover_poses(self) -> Array:
+        """Poses (k, 7) of the free props: where they were put."""
+        rows = []
+        for _, prop in self.world.movers:
+            yaw = getattr(prop, "yaw", 0.0)
+            z = getattr(prop, "radius", 0.0) or getattr(prop, "height", 0.0) / 2
+            rows.append([prop.x, prop.y, z, np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2)])
+        return np.array(rows, dtype=np.float64).reshape(-1, 7)
+
+    def _begin_period(self) -> None:
+        team, time, period = self.team, self.time, self.control_period
+        ramps = [g.next_ramp(time, period) for g in team.groups]
+        self._twist = team.stack([start for start, _ in ramps])
+        self._target = team.stack([target for _, target in ramps])
+        self._rate = (self._target - self._twist) / period
+
+    def _advance(self, steps: int) -> None:
+        whole = steps == self.substeps
+        dt = self.control_period if whole else steps * self.timestep
+        twist, pose = self._twist, self._pose
+        end = self._target if whole else twist + self._rate * dt
+        mean = (twist + end) * 0.5
+        if pose[:, 2].any() or twist[:, 2].any() or end[:, 2].any():
+            shift = _turning_shift(pose[:, 2], twist, self._rate, dt)
+        else:
+            shift = mean[:, :2] * dt
+        moved = np.empty_like(pose)
+        moved[:, :2] = pose[:, :2] + shift
+        moved[:, 2] = wrap_angle(pose[:, 2] + mean[:, 2] * dt)
+        self._pose, self._twist = moved, end
+
+    def _physics_state(self) -> Array:
+        return np.stack([self._pose, self._twist])
+
+    def _set_physics_state(self, state: Array) -> None:
+        self._pose, self._twist = state[0].copy(), state[1].copy()
+
+
+def _turning_shift(yaw: Array, twist: Array, rate: Array, dt: float) -> Array:
+    """Displacement (n, 2), world frame, of a body-frame ramp that turns; Gauss-Legendre."""
+    t = _NODES * dt
+    at = twist[:, None, :] + rate[:, None, :] * t[:, None]  # (n, 5, 3)
+    heading = yaw[:, None] + twist[:, 2:3] * t + 0.5 * rate[:, 2:3] * t * t
+    c, s = np.cos(heading), np.sin(heading)
+    vx = c * at[..., 0] - s * at[..., 1]
+    vy = s * at[..., 0] + c * at[..., 1]
+    return np.stack([vx @ _WEIGHTS, vy @ _WEIGHTS], axis=-1) * dt

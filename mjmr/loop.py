@@ -1,0 +1,215 @@
+"""The loop both simulations share: control ticks, due sensors, observers, guarded truth."""
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mjmr.errors import InvalidInputError, TruthError
+from mjmr.randomness import Streams
+from mjmr.team import Team
+
+if TYPE_CHECKING:
+    from mjmr.group import Group
+    from mjmr.world import World
+
+Array = NDArray[np.float64]
+
+
+class Truth:
+    """What really is: for metrics and films, never for a controller.
+
+    Every read raises :class:`TruthError` while a controller is to act, that is inside the body of
+    ``for t in simulation.ticks(...)``; an observer is called outside of it.
+    """
+
+    def __init__(self, simulation: "TickedSimulation"):
+        self._simulation = simulation
+
+    def poses(self, group: "Group") -> Array:
+        """True poses of a group, shape (n, 3) [m, m, rad], world frame."""
+        self._guard()
+        return self._simulation.poses_of(group)
+
+    def twists(self, group: "Group") -> Array:
+        """True twists of a group, shape (n, 3) [m/s, m/s, rad/s], body frame."""
+        self._guard()
+        return self._simulation.twists_of(group)
+
+    def movers(self) -> Array:
+        """True poses of the props that can move, shape (k, 7): position [m], quaternion (wxyz)."""
+        self._guard()
+        return self._simulation.mover_poses()
+
+    def _guard(self) -> None:
+        if self._simulation.acting:
+            raise TruthError(
+                "truth cannot be read while a controller is to act; read a sensor, or register "
+                "an observer"
+            )
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """State of a simulation at one instant; opaque, bit-exact when put back.
+
+    Attributes:
+        time: Simulated seconds.
+        step: Physics steps since the start.
+        physics: State vector of the physics.
+        parts: States of groups and sensors.
+    """
+
+    time: float
+    step: int
+    physics: Array
+    parts: tuple[Any, ...]
+
+
+class TickedSimulation(ABC):
+    """Base of :class:`Simulation` and :class:`KinematicSimulation`.
+
+    Attributes:
+        world: What is simulated.
+        team: Every robot of the world, in the groups' order.
+        control_period: Between two ticks [s].
+        timestep: Of the physics [s]: control_period divided by a whole number.
+        substeps: That whole number.
+        step: Physics steps since the start.
+        truth: What really is; guarded.
+        streams: The trial's random streams, by name.
+        acting: True while the body of a ``ticks`` loop runs.
+    """
+
+    def __init__(
+        self, world: "World", *, seed: int, control_period: float, dt_max: float, substeps: int = 0
+    ):
+        if not (control_period > 0 and dt_max > 0):
+            raise InvalidInputError("control_period and dt_max must be positive")
+        if not world.groups:
+            raise InvalidInputError("the world has no robots; add a group first")
+        self.world = world
+        self.team = Team(world.groups)
+        self.control_period = float(control_period)
+        self.substeps = substeps or math.ceil(control_period / dt_max - 1e-9)
+        self.timestep = self.control_period / self.substeps
+        self.step = 0
+        self.streams = Streams(seed)
+        self.truth = Truth(self)
+        self.acting = False
+        self._observers: list[Callable[[], None]] = []
+
+    def _bind(self) -> None:
+        """Take the groups and their sensors; called at the end of a subclass's __init__."""
+        for group in self.world.groups:
+            group.reset()
+            for name, sensor in group.sensors.items():
+                sensor.bind(self, group, f"{group.name}/{name}")
+        self._sensors = [s for g in self.world.groups for s in g.sensors.values()]
+
+    @property
+    def time(self) -> float:
+        """Simulated seconds since the start."""
+        return self.step * self.timestep
+
+    def rng(self, name: str) -> np.random.Generator:
+        """A fresh generator of the trial's stream called ``name``."""
+        return self.streams.generator(name)
+
+    def steps_until(self, time: float) -> int:
+        """First physics step at or after ``time`` [s]."""
+        return math.ceil(time / self.timestep - 1e-9)
+
+    def observe(self, observer: Callable[[], None]) -> None:
+        """Call ``observer`` at the start and after every control period; it may read truth."""
+        self._observers.append(observer)
+
+    def ticks(self, duration: float) -> Iterator[float]:
+        """Run for ``duration`` [s]; yields the time [s] at every control instant.
+
+        The physics advances between ticks, under the commands given inside the body. Every sensor
+        is sampled at its own instants on the way. Can be called again to go on.
+
+        Raises:
+            SimulationDivergedError: The physics left the plausible range.
+        """
+        count = round(duration / self.control_period)
+        observers = self._observers
+        if self.step == 0:
+            self._sample_due()
+            for observe in observers:
+                observe()
+        for _ in range(count):
+            self.acting = True
+            try:
+                yield self.step * self.timestep
+            finally:
+                self.acting = False
+            self._begin_period()
+            end = self.step + self.substeps
+            while self.step < end:
+                stop = end
+                for sensor in self._sensors:
+                    if sensor.due_step < stop:
+                        stop = sensor.due_step
+                self._advance(stop - self.step)
+                self.step = stop
+                self._sample_due()
+            self._end_period()
+            for observe in observers:
+                observe()
+
+    def _sample_due(self) -> None:
+        step = self.step
+        for sensor in self._sensors:
+            if sensor.due_step <= step:
+                sensor.capture(step, step * self.timestep)
+
+    def snapshot(self) -> Snapshot:
+        """State now; :meth:`restore` puts it back bit for bit.
+
+        Observers keep their own state and are not part of it.
+        """
+        parts = tuple(g.state() for g in self.world.groups) + tuple(
+            s.state() for s in self._sensors
+        )
+        return Snapshot(self.time, self.step, self._physics_state(), parts)
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Go back (or forward) to ``snapshot``, taken in a simulation of the same world."""
+        self.step = snapshot.step
+        self._set_physics_state(snapshot.physics)
+        owners: Sequence[Any] = [*self.world.groups, *self._sensors]
+        for owner, state in zip(owners, snapshot.parts, strict=True):
+            owner.set_state(state)
+
+    @abstractmethod
+    def poses_of(self, group: "Group") -> Array:
+        """True poses (n, 3), a new array; for sensors and :class:`Truth`."""
+
+    @abstractmethod
+    def twists_of(self, group: "Group") -> Array:
+        """True twists (n, 3), body frame, a new array; for sensors and :class:`Truth`."""
+
+    @abstractmethod
+    def mover_poses(self) -> Array:
+        """Poses (k, 7) of the props that can move."""
+
+    @abstractmethod
+    def _begin_period(self) -> None: ...
+
+    @abstractmethod
+    def _advance(self, steps: int) -> None: ...
+
+    def _end_period(self) -> None:
+        """Check the state; nothing to check by default."""
+
+    @abstractmethod
+    def _physics_state(self) -> Array: ...
+
+    @abstractmethod
+    def _set_physics_state(self, state: Array) -> None: ...

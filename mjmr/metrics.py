@@ -1,0 +1,136 @@
+"""Meters: what happened between bodies, from truth; never seen by a controller."""
+
+from typing import TYPE_CHECKING
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from mjmr.overlap import box_overlap, pair_overlap
+
+if TYPE_CHECKING:
+    from mjmr.kinematics import KinematicSimulation
+    from mjmr.simulation import Simulation
+
+Array = NDArray[np.float64]
+
+
+class OverlapMeter:
+    """Interpenetration depth times the time spent in it, in a kinematic simulation.
+
+    The metric of Bruce and Veloso 2005, section 5, summed over robot pairs and, apart, over
+    robots and boxes or walls. Each control period is a known ramp, so the depth is evaluated at
+    ``samples`` instants inside it (midpoint rule), not only at ticks.
+
+    Attributes:
+        robots: Over robot pairs [m s].
+        obstacles: Over robots and boxes or walls [m s].
+        deepest: Deepest overlap of a pair seen [m].
+        last_overlap: Last instant at which a pair overlapped [s]; NaN if none did.
+    """
+
+    def __init__(self, simulation: "KinematicSimulation", samples: int = 8):
+        """Args: simulation: What to watch. samples: Instants a control period."""
+        self._simulation, self._samples = simulation, samples
+        team = simulation.team
+        self._radii = team.radii
+        self._boxes, self._bounds = simulation.world.boxes, simulation.world.bounds
+        self.robots = self.obstacles = self.deepest = 0.0
+        self.last_overlap = np.nan
+        self._previous: tuple[Array, Array] | None = None
+        simulation.observe(self._measure)
+
+    def _measure(self) -> None:
+        simulation = self._simulation
+        team, truth = simulation.team, simulation.truth
+        pose = team.stack([truth.poses(g) for g in team.groups])
+        twist = team.stack([truth.twists(g) for g in team.groups])
+        position = np.ascontiguousarray(pose[:, :2])
+        velocity = _world_velocity(pose, twist)
+        if self._previous is not None:
+            start, before = self._previous
+            period = simulation.control_period
+            total, depth = pair_overlap(
+                start, before, position, velocity, self._radii, period, self._samples
+            )
+            if total > 0.0:
+                self.robots += total
+                self.deepest = max(self.deepest, depth)
+                self.last_overlap = simulation.time
+            self.obstacles += box_overlap(
+                start, before, position, velocity, self._radii, self._boxes, self._bounds,
+                period, self._samples,
+            )  # fmt: skip
+        self._previous = position, velocity
+
+
+def _world_velocity(pose: Array, twist: Array) -> Array:
+    yaw = pose[:, 2]
+    if not yaw.any():
+        return np.ascontiguousarray(twist[:, :2])
+    c, s = np.cos(yaw), np.sin(yaw)
+    return np.column_stack(
+        [c * twist[:, 0] - s * twist[:, 1], s * twist[:, 0] + c * twist[:, 1]]
+    )
+
+
+class ContactMeter:
+    """Time and impulse of contacts, seen at every physics step.
+
+    Attributes:
+        robots: Time in contact summed over robot pairs [s].
+        obstacles: Time in contact summed over robots touching a wall or fixed box [s].
+        robot_impulse: Normal impulse summed over robot pairs [N s].
+        obstacle_impulse: The same over robots and walls or boxes [N s].
+        episodes: Robot-robot contacts begun.
+    """
+
+    def __init__(self, simulation: "Simulation"):
+        """Args: simulation: What to watch."""
+        self._data = simulation.data
+        self._dt = simulation.timestep
+        model = simulation.model
+        robots = np.full(model.nbody, -1, dtype=np.int64)
+        for i, name in enumerate(simulation.team.names):
+            for body in range(model.nbody):
+                if model.body(body).name.startswith(f"{name}/"):
+                    robots[body] = i
+        self._robot = robots[model.geom_bodyid]
+        fixed = (model.geom_bodyid == 0) & (model.geom_type != mujoco.mjtGeom.mjGEOM_PLANE)
+        self._fixed = fixed
+        self.robots = self.obstacles = 0.0
+        self.robot_impulse = self.obstacle_impulse = 0.0
+        self.episodes = 0
+        self._touching: set[tuple[int, int]] = set()
+        simulation.watch_steps(self._measure)
+
+    def _measure(self) -> None:
+        data = self._data
+        if data.ncon == 0:
+            self._touching = set()
+            return
+        contact = data.contact
+        geom = contact.geom
+        first, second = self._robot[geom[:, 0]], self._robot[geom[:, 1]]
+        near = contact.dist <= 0.0
+        pair = near & (first >= 0) & (second >= 0)
+        wall = near & (
+            ((first >= 0) & self._fixed[geom[:, 1]]) | ((second >= 0) & self._fixed[geom[:, 0]])
+        )
+        touching: set[tuple[int, int]] = set()
+        if pair.any():
+            low, high = np.minimum(first, second)[pair], np.maximum(first, second)[pair]
+            touching = set(zip(low.tolist(), high.tolist(), strict=True))
+            self.robots += len(touching) * self._dt
+            self.robot_impulse += self._normal_force(pair) * self._dt
+            self.episodes += len(touching - self._touching)
+        self._touching = touching
+        if wall.any():
+            robot = np.maximum(first, second)[wall]
+            self.obstacles += len(set(robot.tolist())) * self._dt
+            self.obstacle_impulse += self._normal_force(wall) * self._dt
+
+    def _normal_force(self, chosen: NDArray[np.bool_]) -> float:
+        # with elliptic cones the first row of a contact is its normal force
+        address = self._data.contact.efc_address[chosen]
+        return float(self._data.efc_force[address[address >= 0]].sum())

@@ -1,0 +1,97 @@
+"""What every platform offers: a model to attach, a drive to bind, limits of its commands."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from mjmr.sensors.base import Sensor
+
+Array = NDArray[np.float64]
+
+
+class Drive(Protocol):
+    """The actuators of n robots in one compiled model, as arrays."""
+
+    def place(self, data: "mujoco.MjData", poses: Array) -> None:
+        """Put the robots at rest at poses (n, 3), world frame; before a run, never inside one."""
+        ...
+
+    def poses(self, data: "mujoco.MjData") -> Array:
+        """Poses (n, 3), world frame, yaw in (-pi, pi]; a new array."""
+        ...
+
+    def twists(self, data: "mujoco.MjData") -> Array:
+        """Twists (n, 3): forward, left [m/s] and anticlockwise [rad/s], body frame; a new array."""
+        ...
+
+    def ramp(self, data: "mujoco.MjData", start: Array, target: Array, period: float) -> None:
+        """Set the actuators for one control period, from twist ``start`` to ``target``, (n, 3)."""
+        ...
+
+    def servo(self, data: "mujoco.MjData") -> None:
+        """Firmware's own loop, called every ``servo_steps`` physics steps if that is not None."""
+        ...
+
+    servo_steps: int | None
+
+
+class Platform(ABC):
+    """A kind of robot.
+
+    Attributes:
+        name: Used for body names: ``soccer_bot0/base``.
+        radius: Of the smallest upright cylinder around the body [m].
+        height: Of the same cylinder [m].
+        max_twist: Largest speed in the plane [m/s] and yaw rate [rad/s] that a command can ask for.
+        braking: Deceleration of the robot's own emergency stop [m/s^2].
+    """
+
+    name: str
+    radius: float
+    height: float
+    max_twist: tuple[float, float]
+    braking: float
+
+    @abstractmethod
+    def model(self, number: int, team: str) -> "mujoco.MjSpec":
+        """Model of one robot, marked with its number and its team's colour."""
+
+    @abstractmethod
+    def bind(self, model: "mujoco.MjModel", prefixes: Sequence[str]) -> Drive:
+        """Drive of the robots attached under ``prefixes``."""
+
+    @abstractmethod
+    def default_sensors(self) -> "dict[str, Sensor]":
+        """Sensors every robot of this platform has unless others are mounted in their place."""
+
+    def clamp(self, command: Array) -> Array:
+        """Scale commands (n, 3) into ``max_twist``; returns the argument when nothing is over."""
+        speed, rate = self.max_twist
+        planar = np.hypot(command[:, 0], command[:, 1])
+        over = planar > speed
+        turn_over = np.abs(command[:, 2]) > rate
+        if not (over.any() or turn_over.any()):
+            return command
+        clamped = command.copy()
+        clamped[over, :2] *= (speed / planar[over])[:, None]
+        clamped[:, 2] = np.clip(clamped[:, 2], -rate, rate)
+        return clamped
+
+    def brake(self, twist: Array, period: float) -> Array:
+        """Next cycle's twist of an emergency stop; (n, 3) -> (n, 3).
+
+        The speed falls by ``braking * period`` along its own direction, to zero in the last cycle;
+        the yaw rate falls as if it were carried at the radius of the body.
+        """
+        speed = np.hypot(twist[:, 0], twist[:, 1])
+        step = self.braking * period
+        keep = np.maximum(0.0, 1.0 - step / np.maximum(speed, 1e-300))
+        rate = twist[:, 2]
+        slower = np.sign(rate) * np.maximum(0.0, np.abs(rate) - step / self.radius)
+        return np.column_stack([twist[:, :2] * keep[:, None], slower])

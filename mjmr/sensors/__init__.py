@@ -1,0 +1,6 @@
+"""What robots perceive: sampled on schedule, computed when read."""
+
+from mjmr.sensors.base import Sensor
+from mjmr.sensors.localizer import Localizer
+
+__all__ = ["Localizer", "Sensor"]

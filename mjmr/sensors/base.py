@@ -1,0 +1,146 @@
+"""The base of every sensor: schedule, latency, and samples computed at their first read."""
+
+import math
+from abc import ABC, abstractmethod
+from collections import deque
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mjmr.errors import InvalidInputError
+
+if TYPE_CHECKING:
+    from mjmr.group import Group
+    from mjmr.loop import TickedSimulation
+
+
+@dataclass(slots=True)
+class _Sample:
+    number: int
+    time: float
+    ready_step: int
+    state: Any
+    value: NDArray[np.float64] | None = None
+
+
+class Sensor(ABC):
+    """A sensor on every robot of a group.
+
+    Sample ``k`` is taken at ``phase + k / rate`` and can be read ``latency`` later. At its instant
+    only the state it needs is stored; the sample itself is computed at its first read, from that
+    state and from random numbers that depend on (sensor, robot, k) alone. So who reads, and how
+    often, changes nothing.
+    """
+
+    name = "sensor"
+
+    def __init__(self, *, rate: float, latency: float = 0.0, phase: float = 0.0):
+        """Set the schedule.
+
+        Args:
+            rate: Samples a second [Hz].
+            latency: From a sample's instant to its delivery [s].
+            phase: Instant of the first sample [s].
+
+        Raises:
+            InvalidInputError: A rate that is not positive, a negative latency or phase.
+        """
+        if not (rate > 0 and math.isfinite(rate)):
+            raise InvalidInputError(f"a sensor's rate must be positive; got {rate} Hz")
+        if not (latency >= 0 and phase >= 0):
+            raise InvalidInputError(
+                f"latency and phase must be 0 or more; got {latency} s and {phase} s"
+            )
+        self.rate, self.latency, self.phase = float(rate), float(latency), float(phase)
+        self._simulation: TickedSimulation | None = None
+
+    def bind(self, simulation: "TickedSimulation", group: "Group", stream: str) -> None:
+        """Start afresh in ``simulation``; called once by it.
+
+        Args:
+            simulation: Whose time the schedule follows.
+            group: The robots that carry the sensor.
+            stream: Name of the sensor's random stream.
+        """
+        self._simulation, self._group = simulation, group
+        self._samples: deque[_Sample] = deque()
+        self._next_number = 0
+        self._latency_steps = simulation.steps_until(self.latency)
+        self.due_step = simulation.steps_until(self.phase)
+        self.prepare(simulation.streams.sequence(stream), group)
+
+    def capture(self, step: int, time: float) -> None:
+        """Store what the sample due now needs, and find the next due step; for simulations."""
+        assert self._simulation is not None
+        number = self._next_number
+        state = self.observe(time)
+        self._samples.append(_Sample(number, time, step + self._latency_steps, state))
+        self._next_number = number + 1
+        self.due_step = max(
+            step + 1, self._simulation.steps_until(self.phase + (number + 1) / self.rate)
+        )
+        # keep what is still on its way and the newest that has arrived
+        while len(self._samples) > 1 and self._samples[1].ready_step <= step:
+            self._samples.popleft()
+
+    def read(self) -> NDArray[np.float64]:
+        """Newest sample delivered by now; read-only.
+
+        Raises:
+            InvalidInputError: The group is in no simulation yet.
+        """
+        sample = self._newest()
+        if sample is None:
+            value = self.nothing()
+        else:
+            if sample.value is None:
+                sample.value = self.compute(sample.state, sample.number)
+            value = sample.value.view()
+        value.setflags(write=False)
+        return value
+
+    @property
+    def sampled_at(self) -> float:
+        """Instant of the sample :meth:`read` returns [s]; NaN before the first delivery."""
+        sample = self._newest()
+        return math.nan if sample is None else sample.time
+
+    def state(self) -> Any:
+        """What the sensor remembers, for snapshots."""
+        copies = tuple(_Sample(s.number, s.time, s.ready_step, s.state) for s in self._samples)
+        return copies, self._next_number, self.due_step
+
+    def set_state(self, state: Any) -> None:
+        """Put back what :meth:`state` returned."""
+        copies, self._next_number, self.due_step = state
+        self._samples = deque(_Sample(s.number, s.time, s.ready_step, s.state) for s in copies)
+
+    @abstractmethod
+    def prepare(self, sequence: np.random.SeedSequence, group: "Group") -> None:
+        """Set up random streams and indices."""
+
+    @abstractmethod
+    def observe(self, time: float) -> Any:
+        """State of the world that a sample taken now needs; copies, never views."""
+
+    @abstractmethod
+    def compute(self, state: Any, number: int) -> NDArray[np.float64]:
+        """The sample, from what :meth:`observe` stored and its number."""
+
+    @abstractmethod
+    def nothing(self) -> NDArray[np.float64]:
+        """What is read before the first delivery."""
+
+    def _newest(self) -> _Sample | None:
+        if self._simulation is None:
+            raise InvalidInputError(
+                f"the {self.name} can be read once its group is in a simulation"
+            )
+        now, found = self._simulation.step, None
+        for sample in self._samples:
+            if sample.ready_step > now:
+                break
+            found = sample
+        return found

@@ -1,0 +1,164 @@
+"""Simulation: a World in MuJoCo, advanced between the ticks of a control loop."""
+
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from mjmr.errors import InvalidInputError, SimulationDivergedError
+from mjmr.loop import Snapshot, TickedSimulation
+
+if TYPE_CHECKING:
+    from mjmr.group import Group
+    from mjmr.world import World
+
+Array = NDArray[np.float64]
+_STATE = mujoco.mjtState.mjSTATE_INTEGRATION
+
+
+class Simulation(TickedSimulation):
+    """Contact physics: robots move by their actuators and by what touches them.
+
+    Attributes:
+        model: The compiled model.
+        data: Its state; not to be written to while ticking.
+    """
+
+    def __init__(
+        self,
+        world: "World",
+        *,
+        seed: int = 0,
+        control_period: float = 1 / 60,
+        dt_max: float = 0.005,
+        model: mujoco.MjModel | None = None,
+        data: mujoco.MjData | None = None,
+        bound: float = 100.0,
+    ):
+        """Compile the world (or adopt a compiled pair) and put the robots at their starts.
+
+        Args:
+            world: What is simulated.
+            seed: Of every random stream of the trial.
+            control_period: Between two ticks [s].
+            dt_max: Largest timestep [s]; the one used divides control_period.
+            model: An existing model of this world to adopt, shared with its owner; its timestep
+                must divide control_period.
+            data: The existing state that goes with ``model``.
+            bound: Anything further than this from the origin [m] counts as diverged.
+
+        Raises:
+            InvalidInputError: A model without data, or with a timestep that does not divide.
+        """
+        substeps = 0
+        if (model is None) != (data is None):
+            raise InvalidInputError("give both model and data to adopt a pair, or neither")
+        if model is not None:
+            substeps = round(control_period / model.opt.timestep)
+            if abs(substeps * model.opt.timestep - control_period) > 1e-9:
+                raise InvalidInputError(
+                    f"the adopted model's timestep {model.opt.timestep:g} s does not divide the "
+                    f"control period {control_period:g} s"
+                )
+        super().__init__(
+            world, seed=seed, control_period=control_period, dt_max=dt_max, substeps=substeps
+        )
+        if model is None or data is None:
+            spec = world.spec()
+            spec.option.timestep = self.timestep
+            model = spec.compile()
+            data = mujoco.MjData(model)
+        self.model, self.data = model, data
+        self.timestep = model.opt.timestep
+        self._bound = bound
+        self._drives = {id(g): g.platform.bind(model, g.prefixes) for g in world.groups}
+        self._each = [(g, self._drives[id(g)]) for g in world.groups]
+        self._step_watchers: list[Callable[[], None]] = []
+        # a firmware loop runs on the coarsest grid of physics steps that serves every platform
+        firmware = [d.servo_steps for _, d in self._each if d.servo_steps is not None]
+        self._chunk = int(np.gcd.reduce(firmware)) if firmware else 0
+        bodies = [model.body(name).id for name, _ in world.movers]
+        self._mover_ids = np.array(bodies, dtype=np.int64)
+        for group, drive in self._each:
+            drive.place(data, group.start)
+        mujoco.mj_forward(model, data)
+        self._warnings = int(data.warning.number.sum())
+        self._history: deque[Snapshot] = deque(maxlen=10)
+        self._ticks_done = 0
+        self._bind()
+
+    def poses_of(self, group: "Group") -> Array:
+        """True poses (n, 3)."""
+        return self._drives[id(group)].poses(self.data)
+
+    def twists_of(self, group: "Group") -> Array:
+        """True twists (n, 3), body frame."""
+        return self._drives[id(group)].twists(self.data)
+
+    def mover_poses(self) -> Array:
+        """Poses (k, 7) of the free props."""
+        ids = self._mover_ids
+        return np.concatenate([self.data.xpos[ids], self.data.xquat[ids]], axis=1)
+
+    def watch_steps(self, watcher: Callable[[], None]) -> None:
+        """Call ``watcher`` after every physics step; for meters of contact, which are brief."""
+        self._step_watchers.append(watcher)
+
+    def _begin_period(self) -> None:
+        time, period, data = self.time, self.control_period, self.data
+        for group, drive in self._each:
+            start, target = group.next_ramp(time, period)
+            drive.ramp(data, start, target, period)
+
+    def _advance(self, steps: int) -> None:
+        model, data = self.model, self.data
+        if not self._step_watchers and not self._chunk:
+            mujoco.mj_step(model, data, steps)
+            return
+        for k in range(steps):
+            if self._chunk:
+                for _, drive in self._each:
+                    if drive.servo_steps and (self.step + k) % drive.servo_steps == 0:
+                        drive.servo(data)
+            mujoco.mj_step(model, data)
+            for watch in self._step_watchers:
+                watch()
+
+    def _end_period(self) -> None:
+        data = self.data
+        # one pass finds NaN, infinity and runaway alike: NaN compares false
+        plausible = np.abs(data.qpos).max() <= self._bound
+        warned = data.warning.number.sum() != self._warnings
+        if not plausible or warned:
+            raise self._diverged()
+        self._ticks_done += 1
+        if self._ticks_done % 6 == 0:
+            self._history.append(self.snapshot())
+
+    def _diverged(self) -> SimulationDivergedError:
+        data = self.data
+        counts = data.warning.number
+        names = [mujoco.mjtWarning(i).name for i in np.flatnonzero(counts)]
+        if names:
+            why = f"MuJoCo warned: {', '.join(names)}"
+        elif not np.isfinite(data.qpos).all():
+            why = "a position is not finite"
+        else:
+            why = f"a position is beyond {self._bound:g}"
+        error = SimulationDivergedError(f"the physics diverged at t = {self.time:.3f} s: {why}")
+        error.snapshots = tuple(self._history)
+        return error
+
+    def _physics_state(self) -> Array:
+        state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
+        mujoco.mj_getState(self.model, self.data, state, _STATE)
+        return state
+
+    def _set_physics_state(self, state: Array) -> None:
+        mujoco.mj_setState(self.model, self.data, state, _STATE)
+        mujoco.mj_forward(self.model, self.data)
+        # mj_forward recomputes the warm start; put the stored one back
+        mujoco.mj_setState(self.model, self.data, state, _STATE)

@@ -1,0 +1,211 @@
+"""World: floor, walls, boxes, balls and groups of robots, declared once and built into an MjSpec.
+
+The declaration is what planners, meters and films read; the MjSpec is built from it when a
+simulation or a film needs one, so that a kinematic run loads no MuJoCo.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from mjmr.errors import InvalidInputError, UnknownNameError
+from mjmr.group import Group
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from mjmr.robots.platform import Platform
+
+FLOORS = ("carpet", "concrete")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Box:
+    """A box that stands on the floor; fixed, or free to be pushed when it has a mass.
+
+    Attributes:
+        x: Centre [m], world frame.
+        y: Centre [m], world frame.
+        yaw: Heading of the length axis [rad].
+        length: Along the length axis [m].
+        width: Across it [m].
+        height: [m].
+        mass: [kg]; None for a fixed box.
+    """
+
+    x: float
+    y: float
+    yaw: float = 0.0
+    length: float
+    width: float
+    height: float = 0.3
+    mass: float | None = None
+
+    def __post_init__(self):
+        if min(self.length, self.width, self.height) <= 0:
+            raise InvalidInputError(
+                f"a box needs a positive length, width and height; got "
+                f"{self.length} x {self.width} x {self.height} m"
+            )
+        if self.mass is not None and self.mass <= 0:
+            raise InvalidInputError(f"a box's mass must be positive or None; got {self.mass} kg")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ball:
+    """A free ball at rest on the floor.
+
+    Attributes:
+        x: Centre [m], world frame.
+        y: Centre [m], world frame.
+        radius: [m].
+        mass: [kg].
+        rgba: Colour, 0 to 1.
+    """
+
+    x: float
+    y: float
+    radius: float
+    mass: float
+    rgba: tuple[float, float, float, float] = (0.95, 0.4, 0.05, 1.0)
+
+
+class World:
+    """A rectangular floor with a wall around it, and what stands on it."""
+
+    def __init__(
+        self,
+        *,
+        bounds: ArrayLike,
+        field: ArrayLike | None = None,
+        wall_height: float = 0.1,
+        floor: str = "carpet",
+    ):
+        """Declare an empty world.
+
+        Args:
+            bounds: Inner faces of the wall ``(xmin, ymin, xmax, ymax)`` [m], world frame.
+            field: Rectangle of a marked playing field, same form, or None.
+            wall_height: [m].
+            floor: One of ``FLOORS``; carpet carries field lines when there is a field.
+
+        Raises:
+            InvalidInputError: Bounds without area.
+            UnknownNameError: Unknown floor.
+        """
+        self.bounds = _rectangle(bounds, "bounds")
+        self.field = None if field is None else _rectangle(field, "field")
+        self.wall_height = float(wall_height)
+        if floor not in FLOORS:
+            raise UnknownNameError("floor", floor, FLOORS)
+        self.floor = floor
+        self.props: list[Box | Ball] = []
+        self.groups: list[Group] = []
+        self._edits: list[Callable[[Any], None]] = []
+
+    @classmethod
+    def rectangle(
+        cls, length: float, width: float, *, border: float = 0.0, **options: Any
+    ) -> "World":
+        """World centred on the origin: a field of length x width [m] and a border [m] around it."""
+        half = np.array([length, width]) / 2.0
+        outer = half + border
+        field = np.concatenate([-half, half]) if border > 0 else None
+        return cls(bounds=np.concatenate([-outer, outer]), field=field, **options)
+
+    def add_box(self, x: float, y: float, length: float, width: float, **options: Any) -> Box:
+        """Stand a box on the floor; see :class:`Box` for the options."""
+        box = Box(x=x, y=y, length=length, width=width, **options)
+        self.props.append(box)
+        return box
+
+    def add_golf_ball(self, x: float, y: float) -> Ball:
+        """Lay the small size league's ball (a golf ball, 42.7 mm, 46 g) on the floor."""
+        ball = Ball(x=x, y=y, radius=0.02135, mass=0.046)
+        self.props.append(ball)
+        return ball
+
+    def add_group(
+        self, platform: "type[Platform] | Platform", poses: ArrayLike, **options: Any
+    ) -> Group:
+        """Add robots of one platform.
+
+        Args:
+            platform: A platform class, or an instance with options of its own.
+            poses: Start poses, shape (n, 3): x, y, yaw [m, m, rad], world frame.
+            options: See :class:`mjmr.group.Group`.
+
+        Raises:
+            InvalidInputError: Poses of another shape, not finite or outside the walls.
+        """
+        instance = platform() if isinstance(platform, type) else platform
+        taken = sum(g.platform.name == instance.name for g in self.groups)
+        options.setdefault("name", instance.name if not taken else f"{instance.name}_{taken}_")
+        group = Group(instance, poses, **options)
+        self._check_inside(group)
+        if any(g.name == group.name for g in self.groups):
+            raise InvalidInputError(f"there is a group named {group.name!r} already")
+        self.groups.append(group)
+        return group
+
+    def edit(self, change: "Callable[[mujoco.MjSpec], None]") -> None:
+        """Register a change to the MjSpec, applied at the end of every build."""
+        self._edits.append(change)
+
+    @property
+    def boxes(self) -> NDArray[np.float64]:
+        """Fixed boxes, shape (k, 5): x, y, yaw, half length, half width [m, m, rad, m, m]."""
+        rows = [
+            (b.x, b.y, b.yaw, b.length / 2, b.width / 2)
+            for b in self.props
+            if isinstance(b, Box) and b.mass is None
+        ]
+        return np.array(rows, dtype=np.float64).reshape(-1, 5)
+
+    @property
+    def movers(self) -> Sequence[tuple[str, Box | Ball]]:
+        """Props that can be moved, with their body names in the built model."""
+        found = []
+        for i, prop in enumerate(self.props):
+            if isinstance(prop, Ball) or prop.mass is not None:
+                found.append((f"{type(prop).__name__.lower()}{i}", prop))
+        return found
+
+    def spec(self) -> "mujoco.MjSpec":
+        """Build the MjSpec of this world; each call builds a new one."""
+        from mjmr.world_spec import build_spec
+
+        spec = build_spec(self)
+        for change in self._edits:
+            change(spec)
+        return spec
+
+    def to_xml(self) -> str:
+        """MJCF text of this world, which MuJoCo's own viewer opens."""
+        spec = self.spec()
+        spec.compile()
+        return spec.to_xml()
+
+    def _check_inside(self, group: Group) -> None:
+        r = group.platform.radius
+        low, high = self.bounds[:2] + r, self.bounds[2:] - r
+        outside = ((group.start[:, :2] < low) | (group.start[:, :2] > high)).any(axis=1)
+        if outside.any():
+            names = ", ".join(f"{group.name}{i}" for i in np.flatnonzero(outside))
+            raise InvalidInputError(
+                f"these robots start outside the walls or touch them: {names}; centres must lie "
+                f"within x {low[0]:g} to {high[0]:g} and y {low[1]:g} to {high[1]:g} m"
+            )
+
+
+def _rectangle(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    rectangle = np.array(values, dtype=np.float64)
+    if rectangle.shape != (4,) or not np.isfinite(rectangle).all():
+        raise InvalidInputError(f"{name} must be four finite numbers (xmin, ymin, xmax, ymax)")
+    if (rectangle[2:] <= rectangle[:2]).any():
+        raise InvalidInputError(f"{name} must have xmin < xmax and ymin < ymax; got {values}")
+    rectangle.setflags(write=False)
+    return rectangle

@@ -1,0 +1,192 @@
+"""Builds the MjSpec of a World: floor, light, wall, field lines, props, robots, cameras."""
+
+from typing import TYPE_CHECKING
+
+import mujoco
+import numpy as np
+
+if TYPE_CHECKING:
+    from mjmr.world import Ball, Box, World
+
+_BOX = mujoco.mjtGeom.mjGEOM_BOX
+_LINE_WIDTH = 0.01
+OVERVIEW = "overview"
+OVERVIEW_FOVY = 42.0
+
+
+def build_spec(world: "World") -> mujoco.MjSpec:
+    """Spec of ``world`` with the options every mjmr world shares.
+
+    Collision geometry is in geom group 0 and what is only seen in group 1, so that rays and
+    contacts can be asked for the same shapes.
+    """
+    spec = mujoco.MjSpec()
+    spec.modelname = "mjmr"
+    spec.compiler.degree = False
+    spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
+    spec.option.impratio = 10.0
+    _materials(spec, world)
+    _lights_and_overview(spec, world)
+    _floor(spec, world)
+    _wall(spec, world)
+    if world.field is not None:
+        _field_lines(spec, world.field)
+    for name, prop in _named_props(world):
+        _prop(spec, name, prop)
+    for group in world.groups:
+        group.add_to(spec)
+    spec.visual.quality.offsamples = 0
+    spec.visual.global_.offwidth, spec.visual.global_.offheight = 1920, 1080
+    spec.visual.headlight.ambient = [0.35, 0.35, 0.35]
+    spec.visual.headlight.diffuse = [0.25, 0.25, 0.25]
+    spec.visual.headlight.specular = [0.0, 0.0, 0.0]
+    spec.visual.map.znear = 0.01
+    return spec
+
+
+def _named_props(world: "World"):
+    return [(f"{type(p).__name__.lower()}{i}", p) for i, p in enumerate(world.props)]
+
+
+def _materials(spec: mujoco.MjSpec, world: "World") -> None:
+    dark, light = {
+        "carpet": ((0.10, 0.36, 0.16), (0.12, 0.40, 0.18)),
+        "concrete": ((0.52, 0.53, 0.55), (0.58, 0.59, 0.61)),
+    }[world.floor]
+    spec.add_texture(
+        name="floor",
+        type=mujoco.mjtTexture.mjTEXTURE_2D,
+        builtin=mujoco.mjtBuiltin.mjBUILTIN_CHECKER,
+        rgb1=dark,
+        rgb2=light,
+        width=256,
+        height=256,
+    )
+    material = spec.add_material(name="floor", texrepeat=[1, 1], texuniform=True, specular=0.0)
+    material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "floor"
+    spec.add_material(name="wall", rgba=[0.82, 0.83, 0.85, 1], specular=0.1)
+    spec.add_material(name="fixed_box", rgba=[0.55, 0.42, 0.30, 1], specular=0.05)
+    spec.add_material(name="free_box", rgba=[0.78, 0.60, 0.32, 1], specular=0.05)
+    spec.add_material(name="line", rgba=[0.95, 0.95, 0.95, 1], specular=0.0)
+
+
+def _lights_and_overview(spec: mujoco.MjSpec, world: "World") -> None:
+    low, high = world.bounds[:2], world.bounds[2:]
+    centre, size = (low + high) / 2, high - low
+    far = float(size.max())
+    spec.worldbody.add_light(
+        type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
+        pos=[centre[0] - far / 2, centre[1] - far / 2, far],
+        dir=[0.45, 0.35, -1.0],
+        diffuse=[0.55, 0.55, 0.55],
+        specular=[0.15, 0.15, 0.15],
+        castshadow=True,
+    )
+    # far enough to see the walls in a 5:4 picture, tilted 15 degrees off the vertical
+    half = max(size[1] / 2, size[0] / 2 / 1.25) * 1.16
+    distance = half / np.tan(np.radians(OVERVIEW_FOVY / 2))
+    tilt = np.radians(15.0)
+    pos = [centre[0], centre[1] - distance * np.sin(tilt), distance * np.cos(tilt)]
+    quat = [np.cos(tilt / 2), np.sin(tilt / 2), 0.0, 0.0]
+    spec.worldbody.add_camera(name=OVERVIEW, pos=pos, quat=quat, fovy=OVERVIEW_FOVY)
+
+
+def _floor(spec: mujoco.MjSpec, world: "World") -> None:
+    low, high = world.bounds[:2], world.bounds[2:]
+    half = (high - low) / 2 + 5.0
+    spec.worldbody.add_geom(
+        name="floor",
+        type=mujoco.mjtGeom.mjGEOM_PLANE,
+        pos=[*((low + high) / 2), 0],
+        size=[half[0], half[1], 0.1],
+        material="floor",
+        friction=[0.8, 0.005, 0.0005],
+        group=0,
+    )
+
+
+def _wall(spec: mujoco.MjSpec, world: "World") -> None:
+    thickness = 0.04
+    (x0, y0, x1, y1), h = world.bounds, world.wall_height
+    t = thickness / 2
+    sides = {
+        "wall_west": (x0 - t, (y0 + y1) / 2, t, (y1 - y0) / 2 + thickness),
+        "wall_east": (x1 + t, (y0 + y1) / 2, t, (y1 - y0) / 2 + thickness),
+        "wall_south": ((x0 + x1) / 2, y0 - t, (x1 - x0) / 2, t),
+        "wall_north": ((x0 + x1) / 2, y1 + t, (x1 - x0) / 2, t),
+    }
+    for name, (x, y, half_x, half_y) in sides.items():
+        spec.worldbody.add_geom(
+            name=name,
+            type=_BOX,
+            pos=[x, y, h / 2],
+            size=[half_x, half_y, h / 2],
+            material="wall",
+            group=0,
+        )
+
+
+def _field_lines(spec: mujoco.MjSpec, field: np.ndarray) -> None:
+    x0, y0, x1, y1 = field
+    w, h = _LINE_WIDTH / 2, 0.0006
+    middle = (x0 + x1) / 2
+    lines = [
+        ((x0 + x1) / 2, y0, (x1 - x0) / 2, w),
+        ((x0 + x1) / 2, y1, (x1 - x0) / 2, w),
+        (x0, (y0 + y1) / 2, w, (y1 - y0) / 2),
+        (x1, (y0 + y1) / 2, w, (y1 - y0) / 2),
+        (middle, (y0 + y1) / 2, w, (y1 - y0) / 2),
+    ]
+    for x, y, half_x, half_y in lines:
+        _drawn_line(spec, [x, y, h], [half_x, half_y, h], 0.0)
+    radius, sides = 0.5, 40
+    for k in range(sides):
+        a = 2 * np.pi * (k + 0.5) / sides
+        pos = [middle + radius * np.cos(a), (y0 + y1) / 2 + radius * np.sin(a), h]
+        half = radius * np.tan(np.pi / sides) + w / 4
+        _drawn_line(spec, pos, [w, half, h], a)
+
+
+def _drawn_line(spec: mujoco.MjSpec, pos: list, size: list, yaw: float) -> None:
+    spec.worldbody.add_geom(
+        type=_BOX,
+        pos=pos,
+        size=size,
+        quat=[np.cos(yaw / 2), 0, 0, np.sin(yaw / 2)],
+        material="line",
+        contype=0,
+        conaffinity=0,
+        group=1,
+    )
+
+
+def _prop(spec: mujoco.MjSpec, name: str, prop: "Box | Ball") -> None:
+    from mjmr.world import Ball
+
+    if isinstance(prop, Ball):
+        body = spec.worldbody.add_body(name=name, pos=[prop.x, prop.y, prop.radius])
+        body.add_freejoint(name=name)
+        body.add_geom(
+            name=name,
+            type=mujoco.mjtGeom.mjGEOM_SPHERE,
+            size=[prop.radius, 0, 0],
+            mass=prop.mass,
+            rgba=prop.rgba,
+            # condim 6 lets it roll to a stop; the rolling coefficient is in metres
+            condim=6,
+            friction=[0.5, 0.002, 0.0004],
+            group=0,
+        )
+        return
+    quat = [np.cos(prop.yaw / 2), 0, 0, np.sin(prop.yaw / 2)]
+    pos = [prop.x, prop.y, prop.height / 2]
+    size = [prop.length / 2, prop.width / 2, prop.height / 2]
+    if prop.mass is None:
+        spec.worldbody.add_geom(
+            name=name, type=_BOX, pos=pos, quat=quat, size=size, material="fixed_box", group=0
+        )
+        return
+    body = spec.worldbody.add_body(name=name, pos=pos, quat=quat)
+    body.add_freejoint(name=name)
+    body.add_geom(name=name, type=_BOX, size=size, mass=prop.mass, material="free_box", group=0)
