@@ -2,7 +2,6 @@
 
 from typing import TYPE_CHECKING
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
@@ -51,14 +50,14 @@ class OverlapMeter:
             start, before = self._previous
             period = simulation.control_period
             total, depth = pair_overlap(
-                start, before, position, velocity, self._radii, period, self._samples
+                start, before, velocity, self._radii, period, self._samples
             )
             if total > 0.0:
                 self.robots += total
                 self.deepest = max(self.deepest, depth)
                 self.last_overlap = simulation.time
             self.obstacles += box_overlap(
-                start, before, position, velocity, self._radii, self._boxes, self._bounds,
+                start, before, velocity, self._radii, self._boxes, self._bounds,
                 period, self._samples,
             )  # fmt: skip
         self._previous = position, velocity
@@ -87,6 +86,8 @@ class ContactMeter:
 
     def __init__(self, simulation: "Simulation"):
         """Args: simulation: What to watch."""
+        import mujoco
+
         self._data = simulation.data
         self._dt = simulation.timestep
         model = simulation.model

@@ -6,13 +6,12 @@ from mjmr.jit import njit
 
 
 @njit
-def pair_overlap(p0, v0, p1, v1, radii, period, samples):
+def pair_overlap(p0, v0, v1, radii, period, samples):
     """Depth times time of disc pairs over one linear velocity ramp.
 
     Args:
         p0: Positions at its start, (n, 2) [m].
         v0: Velocities at its start, (n, 2) [m/s].
-        p1: Positions at its end, (n, 2) [m].
         v1: Velocities at its end, (n, 2) [m/s].
         radii: (n,) [m].
         period: Of the ramp [s].
@@ -46,7 +45,7 @@ def pair_overlap(p0, v0, p1, v1, radii, period, samples):
 
 
 @njit
-def box_overlap(p0, v0, p1, v1, radii, boxes, bounds, period, samples):
+def box_overlap(p0, v0, v1, radii, boxes, bounds, period, samples):
     """Depth times time [m s] of discs in boxes (k, 5) and beyond bounds (4,); see pair_overlap."""
     total = 0.0
     for i in range(p0.shape[0]):

@@ -36,7 +36,11 @@ class Renderer:
             raise UnknownNameError("look", look, LOOKS)
         model.vis.global_.offwidth = max(width, 1)
         model.vis.global_.offheight = max(height, 1)
-        model.vis.quality.offsamples = 4 if look == "fine" else 0
+        quality = model.vis.quality
+        quality.offsamples = 4 if look == "fine" else 0
+        if look == "draft":
+            # in software half of the time went into the triangles of round shapes and the floor
+            quality.numslices, quality.numstacks, quality.numquads = 20, 6, 1
         try:
             self._renderer = mujoco.Renderer(model, height, width)
         except Exception as error:  # each GL backend raises its own kind

@@ -1,0 +1,217 @@
+"""Films: recorded states rendered with overlays, side by side if there are several."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from mjmr.errors import InvalidInputError, UnknownNameError
+from mjmr.overlay import View, draw_notes, draw_text, draw_trails, palette
+from mjmr.recording import Recording
+from mjmr.render import Renderer
+from mjmr.video import VideoWriter
+
+CAMERAS = ("overview", "chase")
+MAX_SECONDS = 60.0
+_HEADER = 44
+_TRAIL = 1.2  # s
+
+
+@dataclass(frozen=True, kw_only=True)
+class FilmOptions:
+    """How a film looks.
+
+    Attributes:
+        camera: ``"overview"``: the whole world from above; ``"chase"``: behind one robot.
+        follow: The robot that ``chase`` follows, index in the team.
+        look: ``"draft"`` or ``"fine"`` (shadows, smooth edges; several times slower).
+        width: [px], even.
+        height: [px], even.
+        fps: Pictures a second.
+        speed: Simulated seconds shown a second; None: real time, faster only where the film would
+            exceed a minute.
+    """
+
+    camera: str = "overview"
+    follow: int = 0
+    look: str = "draft"
+    width: int = 1280
+    height: int = 720
+    fps: int = 30
+    speed: float | None = None
+
+    def __post_init__(self):
+        if self.camera not in CAMERAS:
+            raise UnknownNameError("camera", self.camera, CAMERAS)
+        if self.width % 2 or self.height % 2 or min(self.width, self.height) < 120:
+            raise InvalidInputError(
+                f"a film's size must be even and at least 120 px; got {self.width}x{self.height}"
+            )
+        if self.fps < 1:
+            raise InvalidInputError(f"fps must be at least 1; got {self.fps}")
+        if self.speed is not None and not self.speed > 0:
+            raise InvalidInputError(f"speed must be positive; got {self.speed}")
+
+
+class Film:
+    """Recordings shown side by side under one clock."""
+
+    def __init__(self, title: str, options: FilmOptions | None = None):
+        """Args: title: Written at the top. options: How it looks."""
+        self.title, self.options = title, options or FilmOptions()
+        self._panels: list[tuple[Recording, str]] = []
+
+    def add(self, recording: Recording, label: str = "") -> None:
+        """Add a panel to the right of those there are."""
+        if not len(recording):
+            raise InvalidInputError("this recording is empty; tick its simulation first")
+        self._panels.append((recording, label))
+
+    def write(self, path: str | Path) -> Path:
+        """Render every frame and write the file; returns its path.
+
+        Raises:
+            MissingGLError: No off-screen OpenGL.
+            InvalidInputError: No panel was added.
+        """
+        frames = self._frame_times()
+        options = self.options
+        with VideoWriter(path, options.width, options.height, options.fps) as video:
+            for picture in self._pictures(frames):
+                video.write(picture)
+        return Path(path)
+
+    def still(self, time: float) -> NDArray[np.uint8]:
+        """The picture at ``time`` [s], RGB."""
+        self._frame_times()
+        return next(iter(self._pictures([time])))
+
+    @property
+    def speed(self) -> float:
+        """Simulated seconds shown a second."""
+        return self.options.speed or max(1.0, math.ceil(self._length() / MAX_SECONDS * 10) / 10)
+
+    def _length(self) -> float:
+        return max(float(r.times[-1] - r.times[0]) for r, _ in self._panels)
+
+    def _frame_times(self) -> Sequence[float]:
+        if not self._panels:
+            raise InvalidInputError("a film needs at least one recording")
+        seconds = min(self._length() / self.speed, MAX_SECONDS)
+        start = float(self._panels[0][0].times[0])
+        count = max(1, round(seconds * self.options.fps))
+        return [start + k * self.speed / self.options.fps for k in range(count)]
+
+    def _pictures(self, times: Sequence[float]):
+        options, count = self.options, len(self._panels)
+        width, height = options.width // count, options.height - _HEADER
+        panels: list[_Panel] = []
+        try:
+            for recording, label in self._panels:
+                panels.append(_Panel(recording, label, width, height, options))
+            for time in times:
+                canvas = np.full((options.height, options.width, 3), 24, dtype=np.uint8)
+                for k, panel in enumerate(panels):
+                    canvas[_HEADER:, k * width : (k + 1) * width] = panel.picture(time)
+                clock = f"t = {time:6.2f} s   {self.speed:g} x"
+                draw_text(canvas, self.title, (14, 29), 0.6)
+                draw_text(canvas, clock, (options.width - 14, 29), 0.6, align="right")
+                yield canvas
+        finally:
+            for panel in panels:
+                panel.close()
+
+
+def overview_camera(
+    bounds: NDArray[np.float64], aspect: float, model: mujoco.MjModel
+) -> mujoco.MjvCamera:
+    """Camera above a world that just shows all of it, tilted 15 degrees off the vertical.
+
+    Args:
+        bounds: Of the world (4,) [m].
+        aspect: Width over height of the picture.
+        model: Whose global field of view the camera has.
+    """
+    size = bounds[2:] - bounds[:2]
+    half = max(size[1] / 2 * 1.12, size[0] / 2 / aspect * 1.12)
+    camera = mujoco.MjvCamera()
+    camera.lookat[:2], camera.lookat[2] = (bounds[2:] + bounds[:2]) / 2, 0.0
+    camera.distance = half / math.tan(math.radians(model.vis.global_.fovy / 2))
+    camera.azimuth, camera.elevation = 90.0, -75.0
+    return camera
+
+
+class _Panel:
+    """One recording in one rectangle."""
+
+    def __init__(
+        self, recording: Recording, label: str, width: int, height: int, options: FilmOptions
+    ):
+        self._recording, self._label, self._options = recording, label, options
+        world, team = recording.world, recording.team
+        self._model = world.spec().compile()
+        self._data = mujoco.MjData(self._model)
+        self._drives = [(team.rows(g), g.platform.bind(self._model, g.prefixes))
+                        for g in world.groups]  # fmt: skip
+        self._mover_qpos = np.array(
+            [self._model.joint(name).qposadr[0] + np.arange(7) for name, _ in world.movers],
+            dtype=np.int64,
+        ).reshape(-1, 7)
+        self._times, self._poses = recording.times, recording.poses
+        self._movers = recording.movers
+        self._colours = palette(team.n)
+        self._renderer = Renderer(self._model, width, height, options.look)
+        self._azimuth: float | None = None
+        self._overview = overview_camera(world.bounds, width / height, self._model)
+
+    def picture(self, time: float) -> NDArray[np.uint8]:
+        """Picture at ``time`` [s], RGB."""
+        index = min(int(np.searchsorted(self._times, time - 1e-9)), len(self._times) - 1)
+        poses, model, data = self._poses[index], self._model, self._data
+        for rows, drive in self._drives:
+            drive.place(data, poses[rows])
+        data.qpos[self._mover_qpos] = self._movers[index]
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_camlight(model, data)
+        renderer, recording = self._renderer, self._recording
+        image = renderer.picture(data, self._camera(index)).copy()
+        view = View(*renderer.view(), renderer.width, renderer.height)
+        back = max(0, index - round(_TRAIL / recording.period))
+        draw_trails(image, view, self._poses[back : index + 1 : 3, :, :2], self._colours)
+        draw_notes(
+            image, view, poses, recording.team.radii, recording.notes(index), self._colours
+        )
+        heads = view.ground(poses[:, :2], z=0.16)
+        for i, colour in enumerate(self._colours):
+            draw_text(image, str(i), (heads[i, 0] + 14, heads[i, 1] - 10), 0.45, colour)
+        draw_text(image, self._label, (14, 26), 0.6)
+        draw_text(image, recording.caption(index), (14, renderer.height - 14), 0.55)
+        return image
+
+    def _camera(self, index: int) -> str | mujoco.MjvCamera:
+        options = self._options
+        if options.camera == "overview":
+            return self._overview
+        robot = min(options.follow, self._recording.team.n - 1)
+        x, y, yaw = self._poses[index, robot]
+        # behind the direction of travel, which holonomic robots choose freely, turning slowly
+        back = max(0, index - 10)
+        move = self._poses[index, robot, :2] - self._poses[back, robot, :2]
+        aim = math.atan2(move[1], move[0]) if np.hypot(*move) > 0.02 else self._azimuth
+        if self._azimuth is None or aim is None:
+            self._azimuth = yaw if aim is None else aim
+        else:
+            turn = math.remainder(aim - self._azimuth, 2 * math.pi)
+            self._azimuth += 0.06 * turn
+        camera = mujoco.MjvCamera()
+        camera.lookat[:] = (x, y, 0.1)
+        camera.distance, camera.elevation = 1.3, -28.0
+        camera.azimuth = math.degrees(self._azimuth)
+        return camera
+
+    def close(self) -> None:
+        self._renderer.close()

@@ -1,0 +1,141 @@
+"""Draws what cannot be seen: goals, paths, planned commands, trails, names, clock."""
+
+import colorsys
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Picture = NDArray[np.uint8]
+Rgb = tuple[int, int, int]
+_CIRCLE = np.stack([np.cos(np.linspace(0, 2 * np.pi, 33)), np.sin(np.linspace(0, 2 * np.pi, 33))])
+_FONT = cv2.FONT_HERSHEY_DUPLEX
+_SHIFT = 4  # cv2 takes sub-pixel coordinates as fixed point with this many bits
+
+
+def palette(n: int) -> list[Rgb]:
+    """n clearly different bright colours, 0 to 255."""
+    hues = [(0.12 + k * 0.618034) % 1.0 for k in range(n)]
+    return [
+        tuple(round(255 * c) for c in colorsys.hsv_to_rgb(h, 0.55, 1.0))  # pyright: ignore
+        for h in hues
+    ]
+
+
+@dataclass(frozen=True)
+class View:
+    """A pinhole camera.
+
+    Attributes:
+        position: (3,) [m], world frame.
+        rotation: R_world_camera (3, 3); columns are the image's right, down and forward.
+        focal: [px].
+        width: Of the picture [px].
+        height: Of the picture [px].
+    """
+
+    position: Array
+    rotation: Array
+    focal: float
+    width: int
+    height: int
+
+    def project(self, points: Array) -> Array:
+        """Pixels (..., 2) of world points (..., 3); NaN for what lies behind the camera."""
+        local = (points - self.position) @ self.rotation
+        depth = np.where(local[..., 2:] > 1e-6, local[..., 2:], np.nan)
+        return local[..., :2] / depth * self.focal + [self.width / 2, self.height / 2]
+
+    def ground(self, points: Array, z: float = 0.003) -> Array:
+        """Pixels (..., 2) of points (..., 2) on the floor."""
+        height = np.full((*points.shape[:-1], 1), z)
+        return self.project(np.concatenate([points, height], axis=-1))
+
+
+def draw_line(
+    picture: Picture, pixels: Array, colour: Rgb, thickness: int = 1, dashed: bool = False
+) -> None:
+    """Draw a polyline through pixels (k, 2); anything not finite is left out."""
+    pixels = pixels[np.isfinite(pixels).all(axis=-1)]
+    if len(pixels) < 2:
+        return
+    if dashed:
+        for a, b in zip(pixels[:-1], pixels[1:], strict=True):
+            length = float(np.hypot(*(b - a)))
+            cuts = np.arange(0.0, length, 12.0)
+            for start in cuts:
+                end = min(start + 6.0, length)
+                piece = np.stack([a + (b - a) * start / length, a + (b - a) * end / length])
+                draw_line(picture, piece, colour, thickness)
+        return
+    fixed = np.round(pixels * (1 << _SHIFT)).astype(np.int32)
+    cv2.polylines(picture, [fixed], False, colour, thickness, cv2.LINE_AA, _SHIFT)
+
+
+def draw_ring(
+    picture: Picture, view: View, centre: Array, radius: float, colour: Rgb, thickness: int = 1
+) -> None:
+    """Draw a circle on the floor: centre (2,) and radius [m]."""
+    if np.isfinite(centre).all():
+        draw_line(picture, view.ground((centre + radius * _CIRCLE.T)), colour, thickness)
+
+
+def draw_text(
+    picture: Picture, text: str, at: tuple[float, float], scale: float = 0.5,
+    colour: Rgb = (255, 255, 255), align: str = "left",
+) -> None:  # fmt: skip
+    """Write a line with a dark rim; ``at`` is the baseline's left end, middle or right end [px]."""
+    if not np.isfinite(at).all():
+        return
+    (width, _), _ = cv2.getTextSize(text, _FONT, scale, 1)
+    x = at[0] - {"left": 0.0, "centre": width / 2, "right": float(width)}[align]
+    origin = (round(x), round(at[1]))
+    # a thicker stroke would be set wider, so the rim is the same text shifted
+    for dx, dy in ((-1, 0), (1, 0), (0, -1), (0, 1)):
+        shifted = (origin[0] + dx, origin[1] + dy)
+        cv2.putText(picture, text, shifted, _FONT, scale, (15, 15, 15), 1, cv2.LINE_AA)
+    cv2.putText(picture, text, origin, _FONT, scale, colour, 1, cv2.LINE_AA)
+
+
+def draw_notes(
+    picture: Picture,
+    view: View,
+    poses: Array,
+    radii: Array,
+    notes: dict[str, Array],
+    colours: list[Rgb],
+) -> None:
+    """Draw goals (rings), paths (dashed through the waypoint) and stops (line and outline).
+
+    Args:
+        picture: RGB, drawn into.
+        view: Its camera.
+        poses: Robots' poses (n, 3).
+        radii: Robots' radii (n,) [m].
+        notes: See :meth:`mjmr.recording.Recording.note`.
+        colours: One a robot.
+    """
+    goals, waypoints = notes.get("goals"), notes.get("waypoints")
+    stops = notes.get("stops")
+    for i, colour in enumerate(colours):
+        here = poses[i, :2]
+        if goals is not None:
+            draw_ring(picture, view, goals[i], 0.06, colour, 2)
+            draw_ring(picture, view, goals[i], 0.02, colour, 2)
+            route = [here, goals[i]]
+            if waypoints is not None and np.isfinite(waypoints[i]).all():
+                route.insert(1, waypoints[i])
+                draw_ring(picture, view, waypoints[i], 0.015, colour, 2)
+            draw_line(picture, view.ground(np.stack(route)), colour, 1, dashed=True)
+        if stops is not None:
+            draw_line(picture, view.ground(np.stack([here, stops[i]])), colour, 2)
+            draw_ring(picture, view, stops[i], radii[i], colour, 1)
+
+
+def draw_trails(picture: Picture, view: View, track: Array, colours: list[Rgb]) -> None:
+    """Draw where robots have been: track (k, n, 2) [m], oldest first."""
+    for i, colour in enumerate(colours):
+        faint: Rgb = tuple(c // 2 for c in colour)  # pyright: ignore[reportAssignmentType]
+        draw_line(picture, view.ground(track[:, i]), faint, 1)
