@@ -1,0 +1,62 @@
+"""Safe navigation: Bruce and Veloso's real-time multi-robot motion planning, re-run.
+
+The declaration; cheap to import. The scenes are in worlds.py, one trial reads top to bottom in
+trial.py, what is claimed and what decides it is in claims.py.
+"""
+
+from pathlib import Path
+
+from experiments.safe_navigation.sizes import FULL, QUICK, STANDARD
+from mjmr.conditions import Parameter
+from mjmr.study import Study
+
+_HERE = "experiments.safe_navigation"
+
+study = Study(
+    name="safe-navigation",
+    title="Real-time multi-robot motion planning with safe dynamics",
+    paper=(
+        "J. Bruce and M. Veloso, Real-Time Multi-Robot Motion Planning with Safe Dynamics, in "
+        "Multi-Robot Systems: From Swarms to Intelligent Automata, vol. III, Springer, 2005"
+    ),
+    summary=(
+        "Soccer robots shuttle across an F180 field at 60 Hz under an ERRT planner that ignores "
+        "dynamics, a trapezoidal motion control that ignores obstacles, and a randomized search "
+        "in velocity space that makes the two safe. Mode 'metric' repeats the paper's own "
+        "simulation (commands executed exactly, bodies pass through each other, interpenetration "
+        "depth times time is counted); mode 'physical' drives bodies with mass through servos "
+        "and contacts in MuJoCo, with an extended Kalman filter behind the camera."
+    ),
+    parameters=(
+        Parameter("mode", "what moves the robots", "metric", ("metric", "physical")),
+        Parameter(
+            "scene",
+            "A: three boxes, parallel lanes; cross4, cross10: no boxes, mirrored goals, a planner "
+            "blind to robots; overlap: two pairs start inside each other; straight: one robot",
+            "A",
+            ("A", "cross4", "cross10", "overlap", "straight"),
+        ),
+        Parameter("search", "whether the velocity-space safety search is on", True),
+        Parameter("sigma_mm", "deviation of reported positions along x and y", 0.0, unit="mm"),
+        Parameter("margin_mm", "added to the radius in the search", 0.0, unit="mm"),
+        Parameter(
+            "failure",
+            "dead: one robot brakes after a third of the time and stays; reports-lost: 5 % of all "
+            "reports are lost; commands-lost: one robot hears nothing for a third of the time",
+            "none",
+            ("none", "dead", "reports-lost", "commands-lost"),
+        ),
+        Parameter("latency", "cycles from a command to its execution", 0, (0, 1, 2, 3)),
+        Parameter("predict", "whether the latency is compensated by predicting forward", True),
+        Parameter("duration", "of a run, simulated", 30.0, unit="s"),
+    ),
+    sizes=(QUICK, STANDARD, FULL),
+    trial=f"{_HERE}.trial:trial",
+    claims=f"{_HERE}.claims:claims",
+    film=f"{_HERE}.film:film",
+    plots=f"{_HERE}.plots:plots",
+    world=f"{_HERE}.worlds:world",
+    bench=f"{_HERE}.bench:bench",
+    prepare=f"{_HERE}.trial:prepare",
+    verdicts=Path(__file__).with_name("verdicts.json"),
+)

@@ -1,0 +1,163 @@
+"""From reports to commands: state estimation, goals, latency compensation, the navigator."""
+
+import time
+from collections import deque
+
+import numpy as np
+from numpy.typing import NDArray
+
+from controllers.estimation import PoseFilter, PoseFilterConfig
+from controllers.motion import Navigator, forward_predict
+from experiments.safe_navigation.worlds import Scene
+from mjmr.geometry import rotate
+
+Array = NDArray[np.float64]
+ARRIVED = 0.05  # [m]
+
+
+class Shuttle:
+    """Gives each robot its far and its near goal in turn, on its own time.
+
+    Attributes:
+        goals: Present goals, (n, 2) [m].
+        reached: Goals reached so far, (n,).
+    """
+
+    def __init__(self, scene: Scene):
+        """Args: scene: Whose goals to shuttle between."""
+        self._ends = np.stack([scene.far, scene.near])
+        self._robots = np.arange(len(scene.starts))
+        self.reached = np.zeros(len(scene.starts), dtype=np.int64)
+        self.goals = scene.far.copy()
+
+    def update(self, position: Array) -> None:
+        """Move on to the next goal where ``position`` (n, 2) is within 50 mm of the present one."""
+        away = self.goals - position
+        arrived = away[:, 0] ** 2 + away[:, 1] ** 2 < ARRIVED**2
+        if arrived.any():
+            self.reached += arrived
+            self.goals = self._ends[self.reached % 2, self._robots]
+
+
+class RawTracker:
+    """The paper's evaluation: the noisy report is the position, the velocity is known exactly.
+
+    A lost report is replaced by dead reckoning from the last one.
+    """
+
+    def __init__(self, n: int, period: float):
+        """Args: n: Robots. period: Control period [s]."""
+        self._period = period
+        self._position = np.zeros((n, 2))
+        self._velocity = np.zeros((n, 2))
+        self.yaw = np.zeros(n)
+
+    def update(self, report: Array, executed: Array) -> tuple[Array, Array]:
+        """Position [m] and velocity [m/s], (n, 2) each, world frame.
+
+        Args:
+            report: (n, 3), NaN rows where lost.
+            executed: Twists the robots say they execute, (n, 3), body frame.
+        """
+        lost = np.isnan(report[:, 0])
+        self.yaw = np.where(lost, self.yaw, report[:, 2])
+        velocity = rotate(executed[:, :2], self.yaw)
+        reckoned = self._position + 0.5 * (self._velocity + velocity) * self._period
+        self._position = np.where(lost[:, None], reckoned, report[:, :2])
+        self._velocity = velocity
+        return self._position, self._velocity
+
+
+class FilterTracker:
+    """The paper's real system: an extended Kalman filter behind the cameras."""
+
+    def __init__(self, n: int, period: float):
+        """Args: n: Robots. period: Control period [s]."""
+        self._filter = PoseFilter(n, PoseFilterConfig())
+        self._period = period
+        self._started = False
+
+    @property
+    def yaw(self) -> Array:
+        """Estimated yaw, (n,) [rad]."""
+        return self._filter.pose[:, 2]
+
+    def update(self, report: Array, executed: Array) -> tuple[Array, Array]:
+        """Position and velocity, (n, 2) each; see :meth:`RawTracker.update`."""
+        if self._started:
+            self._filter.predict(executed, self._period)
+        self._filter.update(report)
+        self._started = True
+        return self._filter.pose[:, :2], self._filter.velocity
+
+
+class Pilot:
+    """One cycle from reports to body-frame commands.
+
+    Attributes:
+        shuttle: The robots' goals.
+        navigator: Plans, controls and searches.
+        seconds: Wall time of this cycle's plan and search [s].
+        stops: Where this cycle's commands followed by braking end, (n, 2) [m]; for films.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        navigator: Navigator,
+        tracker: RawTracker | FilterTracker,
+        latency: int,
+        predict: bool,
+    ):
+        """Put the parts together.
+
+        Args:
+            scene: Starts and goals.
+            navigator: The navigator.
+            tracker: Turns reports into positions and velocities.
+            latency: Cycles from a command to its execution.
+            predict: Whether to plan for the state in which a command will take effect.
+        """
+        n = len(scene.starts)
+        self.shuttle, self.navigator = Shuttle(scene), navigator
+        self._tracker, self._predict = tracker, predict
+        self._pending: deque[Array] = deque([np.zeros((n, 2))] * latency)
+        self._sent: deque[Array] = deque([np.zeros((n, 3))] * (latency + 1))
+        self.stops = scene.starts.copy()
+        self.seconds = 0.0
+
+    def step(self, report: Array, executed: Array) -> Array:
+        """Commands (n, 3), body frame.
+
+        A robot whose telemetry is not what it was told, or whose report is missing, is told to
+        brake, and the others expect it to.
+
+        Args:
+            report: Newest report (n, 3), world frame; NaN rows where lost.
+            executed: Twists the robots say they execute, (n, 3), body frame.
+        """
+        heard = np.abs(executed - self._sent.popleft()).max(axis=1) < 1e-9
+        active = heard & ~np.isnan(report[:, 0])
+        position, velocity = self._tracker.update(report, executed)
+        self.shuttle.update(position)
+        if self._predict and self._pending:
+            position, velocity = forward_predict(
+                position, velocity, np.stack(self._pending), self.navigator.config.period
+            )
+        start = time.perf_counter()
+        planar = self.navigator.step(position, velocity, self.shuttle.goals, active)
+        self.seconds = time.perf_counter() - start
+        if self._pending:
+            self._pending.append(planar)
+            self._pending.popleft()
+        self._note_stops(position, velocity, planar)
+        command = np.zeros((len(planar), 3))
+        command[:, :2] = rotate(planar, -self._tracker.yaw)
+        self._sent.append(command)
+        return command
+
+    def _note_stops(self, position: Array, velocity: Array, command: Array) -> None:
+        config = self.navigator.config
+        speed = np.hypot(command[:, 0], command[:, 1])[:, None]
+        braking = command * speed / (2.0 * config.limits.deceleration)
+        self.stops = position + 0.5 * (velocity + command) * config.period + braking

@@ -1,0 +1,148 @@
+"""One trial: the paper's loop, top to bottom."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from controllers.motion import Navigator, NavigatorConfig
+from experiments.safe_navigation.pilot import FilterTracker, Pilot, RawTracker
+from experiments.safe_navigation.worlds import build
+from mjmr.kinematics import KinematicSimulation
+from mjmr.loop import TickedSimulation
+from mjmr.metrics import ContactMeter, OverlapMeter
+from mjmr.recording import Recording
+
+PERIOD = 1 / 60
+Metrics = dict[str, float | int]
+
+
+def trial(
+    condition: Mapping[str, Any],
+    seed: int,
+    record: Callable[[TickedSimulation, Callable[[], str]], Recording] | None = None,
+) -> Metrics:
+    """Run one condition with one seed.
+
+    Args:
+        condition: See the study's parameters.
+        seed: Of the trial.
+        record: Makes a recording of the simulation, given what its caption says; for films.
+
+    Returns:
+        Metrics; lengths in mm, as tables show them.
+    """
+    world, robots, scene = build(condition)
+    if condition["mode"] == "physical":
+        from mjmr.simulation import Simulation
+
+        simulation: Any = Simulation(world, seed=seed, control_period=PERIOD)
+        meter: Any = ContactMeter(simulation)
+        tracker: Any = FilterTracker(robots.n, PERIOD)
+    else:
+        simulation = KinematicSimulation(world, seed=seed, control_period=PERIOD)
+        meter = OverlapMeter(simulation)
+        tracker = RawTracker(robots.n, PERIOD)
+    config = NavigatorConfig(
+        radius=robots.platform.radius,
+        period=PERIOD,
+        margin=condition["margin_mm"] / 1000.0,
+        search=condition["search"],
+        samples=scene.samples,
+        plan_around_robots=scene.sees_robots,
+    )
+    navigator = Navigator(
+        world.bounds, world.boxes, robots.n, config, simulation.rng("navigator")
+    )
+    pilot = Pilot(scene, navigator, tracker, condition["latency"], condition["predict"])
+    motion = _Motion(simulation, robots) if condition["scene"] == "straight" else None
+    recording = record(simulation, lambda: _caption(meter)) if record else None
+
+    cycles = round(condition["duration"] / PERIOD)
+    spent, sampled = np.zeros(cycles), 0
+    for k, _ in enumerate(simulation.ticks(condition["duration"])):
+        report = robots.localizer.read()
+        command = pilot.step(report, robots.executed)
+        spent[k] = pilot.seconds
+        robots.drive(command)
+        sampled += int(navigator.sampled.sum())
+        if recording is not None:
+            recording.note(
+                goals=pilot.shuttle.goals, waypoints=navigator.waypoints, stops=pilot.stops
+            )
+
+    each = 1e6 * spent / robots.n
+    return {
+        "goals": int(pilot.shuttle.reached.sum()),
+        "sampled_share": sampled / (cycles * robots.n),
+        **_read(meter),
+        **(motion.metrics() if motion else {}),
+        "wall_step_mean_us": float(each.mean()),
+        "wall_step_p95_us": float(np.percentile(each, 95)),
+    }
+
+
+def _read(meter: Any) -> Metrics:
+    if isinstance(meter, OverlapMeter):
+        last = meter.last_overlap
+        return {
+            "overlap_mm_s": 1e3 * meter.robots,
+            "obstacle_overlap_mm_s": 1e3 * meter.obstacles,
+            "deepest_mm": 1e3 * meter.deepest,
+            "last_overlap_s": 0.0 if np.isnan(last) else float(last),
+        }
+    return {
+        "contact_s": meter.robots,
+        "obstacle_contact_s": meter.obstacles,
+        "contacts": meter.episodes,
+        "impulse_Ns": meter.robot_impulse,
+        "obstacle_impulse_Ns": meter.obstacle_impulse,
+    }
+
+
+def _caption(meter: Any) -> str:
+    if isinstance(meter, OverlapMeter):
+        return f"overlap {1e3 * meter.robots:.1f} mm s"
+    return f"robot contact {meter.robots:.2f} s, wall or box {meter.obstacles:.2f} s"
+
+
+class _Motion:
+    """Realised speed, acceleration and braking of the first robot, from its true velocity.
+
+    Acceleration is the slope between 20 % and 80 % of 2 m/s while speed grows, braking the same
+    while it falls; averages over the passages of the run.
+    """
+
+    def __init__(self, simulation: TickedSimulation, robots: Any):
+        self._speeds: list[float] = []
+        self._period = simulation.control_period
+        self._yaw = 0.0
+        truth = simulation.truth
+
+        def observe() -> None:
+            self._speeds.append(float(np.hypot(*truth.twists(robots)[0, :2])))
+            self._yaw = max(self._yaw, abs(float(truth.poses(robots)[0, 2])))
+
+        simulation.observe(observe)
+
+    def metrics(self) -> Metrics:
+        """Speeds [m/s], accelerations [m/s^2] and yaw [deg] realised."""
+        speed = np.array(self._speeds)
+        change = np.diff(speed) / self._period
+        inside = (np.minimum(speed[1:], speed[:-1]) > 0.4) & (
+            np.maximum(speed[1:], speed[:-1]) < 1.6
+        )
+        return {
+            "top_speed": float(speed.max()),
+            "acceleration": float(change[inside & (change > 0)].mean()),
+            "braking": float(-change[inside & (change < 0)].mean()),
+            "yaw_deg": float(np.degrees(self._yaw)),
+        }
+
+
+def prepare() -> None:
+    """Compile everything a trial calls, by running short ones."""
+    from experiments.safe_navigation import study
+
+    for mode in ("metric", "physical"):
+        trial(study.condition(mode=mode, scene="A", latency=1, duration=0.05), 0)

@@ -1,0 +1,102 @@
+"""The scenes: an F180 field with boxes, starts and goals.
+
+The paper's field is 4.9 x 3.8 m with a 0.30 m border; obstacle shapes and goals are only in its
+figures, so these are ours.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mjmr.faults import Fault
+from mjmr.group import Group
+from mjmr.robots.soccer_bot import SoccerBot
+from mjmr.sensors.localizer import Localizer
+from mjmr.world import World
+
+REACH = 2.1  # goals lie at x = +-REACH [m]
+_LANES = (1.2, 0.4, -0.4, -1.2)
+_LOSS = 0.05
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scene:
+    """Where robots start and shuttle.
+
+    Attributes:
+        starts: (n, 2) [m].
+        far: First goals, (n, 2) [m].
+        near: Second goals, (n, 2) [m]; then the first again, and so on.
+        boxes: x, y, length, width [m].
+        sees_robots: Whether the planner treats other robots as obstacles.
+        samples: Accelerations the search draws.
+    """
+
+    starts: NDArray[np.float64]
+    far: NDArray[np.float64]
+    near: NDArray[np.float64]
+    boxes: tuple[tuple[float, float, float, float], ...] = ()
+    sees_robots: bool = True
+    samples: int = 50
+
+
+def scene(name: str) -> Scene:
+    """The scene called ``name``; see the study's parameter."""
+    if name == "A":
+        boxes = ((0.0, 0.8, 0.8, 1.0), (0.0, -0.8, 0.8, 1.0), (1.2, 0.0, 0.6, 0.6))
+        lanes = np.array(_LANES)
+        return Scene(
+            starts=_at(-REACH, lanes), far=_at(REACH, lanes), near=_at(-REACH, lanes), boxes=boxes
+        )
+    if name == "straight":
+        return Scene(
+            starts=_at(-REACH, [0.0]), far=_at(REACH, [0.0]), near=_at(-REACH, [0.0])
+        )
+    lanes = np.linspace(-1.8, 1.8, 10) if name == "cross10" else np.array(_LANES)
+    cross = Scene(
+        starts=_at(-REACH, lanes),
+        far=_at(REACH, -lanes),
+        near=_at(-REACH, lanes),
+        sees_robots=False,
+        samples=100 if name == "cross10" else 50,
+    )
+    if name == "overlap":
+        starts = np.array([[-1.0, 0.5], [-0.88, 0.5], [0.0, -0.8], [0.08, -0.74]])
+        return Scene(starts=starts, far=cross.far, near=cross.near, sees_robots=False)
+    return cross
+
+
+def _at(x: float, ys: Any) -> NDArray[np.float64]:
+    return np.array([[x, y] for y in ys])
+
+
+def build(condition: Mapping[str, Any]) -> tuple[World, Group, Scene]:
+    """World, robots and scene of a condition."""
+    place = scene(condition["scene"])
+    world = World.rectangle(4.9, 3.8, border=0.30)
+    for x, y, length, width in place.boxes:
+        world.add_box(x, y, length, width)
+    poses = np.column_stack([place.starts, np.zeros(len(place.starts))])
+    robots = world.add_group(SoccerBot, poses, command_latency=condition["latency"])
+    lossy = condition["failure"] == "reports-lost"
+    robots.mount(
+        Localizer(
+            rate=60.0,
+            position_noise=condition["sigma_mm"] / 1000.0,
+            loss=_LOSS if lossy else 0.0,
+        )
+    )
+    start = condition["duration"] / 3
+    if condition["failure"] == "dead":
+        robots.faults.add(Fault(kind="dead", robot=1, start=start))
+    elif condition["failure"] == "commands-lost":
+        robots.faults.add(Fault(kind="commands-lost", robot=1, start=start, end=2 * start))
+    return world, robots, place
+
+
+def world(condition: Mapping[str, Any]) -> World:
+    """World of a condition, for ``mjmr mjcf``."""
+    return build(condition)[0]
