@@ -71,9 +71,19 @@ class RawTracker:
 class FilterTracker:
     """The paper's real system: an extended Kalman filter behind the cameras."""
 
-    def __init__(self, n: int, period: float):
-        """Args: n: Robots. period: Control period [s]."""
-        self._filter = PoseFilter(n, PoseFilterConfig())
+    def __init__(self, n: int, period: float, position_noise: float):
+        """Start without an estimate.
+
+        Args:
+            n: Robots.
+            period: Control period [s].
+            position_noise: Deviation of reported positions [m]; the filter assumes at least
+                0.1 mm, for what its model leaves out.
+        """
+        config = PoseFilterConfig(
+            position_noise=max(position_noise, 1e-4), yaw_noise=1e-3, speed_noise=0.01
+        )
+        self._filter = PoseFilter(n, config)
         self._period = period
         self._started = False
 

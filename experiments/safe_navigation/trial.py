@@ -38,7 +38,7 @@ def trial(
 
         simulation: Any = Simulation(world, seed=seed, control_period=PERIOD)
         meter: Any = ContactMeter(simulation)
-        tracker: Any = FilterTracker(robots.n, PERIOD)
+        tracker: Any = FilterTracker(robots.n, PERIOD, condition["sigma_mm"] / 1000.0)
     else:
         simulation = KinematicSimulation(world, seed=seed, control_period=PERIOD)
         meter = OverlapMeter(simulation)

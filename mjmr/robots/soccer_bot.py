@@ -88,6 +88,7 @@ class PlanarDrive:
 
     def __init__(self, model: "mujoco.MjModel", prefixes: Sequence[str]):
         """Look up every index once."""
+        self._half_step = model.opt.timestep / 2.0
         joints = [[model.joint(f"{p}{j}") for j in ("x", "y", "yaw")] for p in prefixes]
         self._qpos = np.array([[j.qposadr[0] for j in row] for row in joints])
         self._qvel = np.array([[j.dofadr[0] for j in row] for row in joints])
@@ -97,6 +98,10 @@ class PlanarDrive:
         self._feed = np.array(
             [[model.actuator(f"{p}{a}_feed").id for a in ("x", "y", "yaw")] for p in prefixes]
         )
+        for row, prefix, actuators in zip(joints, prefixes, servos, strict=True):
+            limits = model.numeric(f"{prefix}drive_limit").data
+            for joint, limit, servo in zip(row, limits, actuators, strict=True):
+                _limit_force(model, joint.id, float(limit), servo.id)
 
     def place(self, data: "mujoco.MjData", poses: Array) -> None:
         """Put the robots at rest at ``poses``."""
@@ -118,18 +123,36 @@ class PlanarDrive:
         """Ramp the servos' set points from ``start`` to ``target`` over one period.
 
         The drive pushes in the body frame, so the end of the ramp is turned by the yaw the ramp
-        itself will add.
+        itself will add. MuJoCo's integrator moves a body for a whole step at the velocity of the
+        step's end, so that velocities belong half a step before their positions; the set point is
+        shifted by as much, which makes the distance covered in a period that of the ramp.
         """
         yaw = data.qpos[self._qpos[:, 2]]
         begin = _turn(start, yaw)
         end = _turn(target, yaw + (start[:, 2] + target[:, 2]) * (period / 2.0))
         acceleration = (end - begin) / period
-        data.act[self._act] = begin
+        data.act[self._act] = begin - acceleration * self._half_step
         data.ctrl[self._servo] = acceleration
         data.ctrl[self._feed] = acceleration
 
     def servo(self, data: "mujoco.MjData") -> None:
         """Nothing: the ramp is integrated by the actuators themselves."""
+
+
+def _limit_force(model: "mujoco.MjModel", joint: int, limit: float, servo: int) -> None:
+    """Limit what a servoed joint really applies to ``limit`` [N or Nm].
+
+    MuJoCo clamps the force before the implicit integrator takes off what the servo's damping will
+    undo within the step, a factor of 1 + kv dt / m; the clamp is widened by it.
+    """
+    import mujoco
+
+    gain = model.actuator_gainprm[servo, 0]
+    body = model.jnt_bodyid[joint]
+    slides = model.jnt_type[joint] == mujoco.mjtJoint.mjJNT_SLIDE
+    inertia = model.body_mass[body] if slides else model.body_inertia[body].max()
+    clamp = limit * (1.0 + gain * model.opt.timestep / inertia)
+    model.jnt_actfrcrange[joint] = (-clamp, clamp)
 
 
 def _turn(twist: Array, yaw: Array) -> Array:
