@@ -122,8 +122,8 @@ def draw_notes(
     for i, colour in enumerate(colours):
         here = poses[i, :2]
         if goals is not None:
-            draw_ring(picture, view, goals[i], 0.06, colour, 2)
-            draw_ring(picture, view, goals[i], 0.02, colour, 2)
+            draw_ring(picture, view, goals[i], 0.09, colour, 1)
+            draw_ring(picture, view, goals[i], 0.015, colour, 2)
             route = [here, goals[i]]
             if waypoints is not None and np.isfinite(waypoints[i]).all():
                 route.insert(1, waypoints[i])

@@ -1,5 +1,6 @@
 """Recording: states of a run over time, with what the controller wants to show beside them."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,8 +24,16 @@ class Recording:
         period: Between two records [s].
     """
 
-    def __init__(self, simulation: "TickedSimulation"):
-        """Args: simulation: What to record, from its present state on."""
+    def __init__(
+        self, simulation: "TickedSimulation", caption: Callable[[], str] | None = None
+    ):
+        """Start recording.
+
+        Args:
+            simulation: What to record, from its present state on.
+            caption: Called at every record for a line of text under the picture; it may read
+                truth.
+        """
         self.world, self.team = simulation.world, simulation.team
         self.period = simulation.control_period
         self._simulation = simulation
@@ -34,14 +43,13 @@ class Recording:
         self._notes: list[dict[str, Array]] = []
         self._captions: list[str] = []
         self._note: dict[str, Array] = {}
-        self._caption = ""
+        self._caption = caption or (lambda: "")
         simulation.observe(self._capture)
 
-    def note(self, caption: str | None = None, **arrays: ArrayLike) -> None:
+    def note(self, **arrays: ArrayLike) -> None:
         """Say what to draw from now on; may be called by a controller's loop.
 
         Args:
-            caption: A line of text under the picture.
             arrays: ``goals`` (rings), ``waypoints`` (the path to the goal leads through them) and
                 ``stops`` (where the planned command followed by braking ends), each of shape
                 (n, 2) over the team [m], world frame; NaN rows are not drawn.
@@ -61,8 +69,6 @@ class Recording:
                 )
             fresh[key] = array
         self._note = fresh
-        if caption is not None:
-            self._caption = caption
 
     def _capture(self) -> None:
         simulation = self._simulation
@@ -71,7 +77,7 @@ class Recording:
         self._poses.append(self.team.stack([truth.poses(g) for g in self.team.groups]))
         self._movers.append(truth.movers())
         self._notes.append(self._note)
-        self._captions.append(self._caption)
+        self._captions.append(self._caption())
 
     def __len__(self) -> int:
         return len(self._times)

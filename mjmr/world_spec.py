@@ -176,6 +176,9 @@ def _prop(spec: mujoco.MjSpec, name: str, prop: "Box | Ball") -> None:
             # condim 6 lets it roll to a stop; the rolling coefficient is in metres
             condim=6,
             friction=[0.5, 0.002, 0.0004],
+            # stiffer than the default and underdamped: it bounces, and sinks in less
+            solref=[0.0085, 0.4],
+            priority=1,
             group=0,
         )
         return

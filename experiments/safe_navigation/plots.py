@@ -1,0 +1,59 @@
+"""The paper's Figures 8 and 9, and the price of safety, as plots."""
+
+from pathlib import Path
+
+import numpy as np
+
+from mjmr import statistics
+from mjmr.plot import figure, interval_line
+from mjmr.table import Table
+
+_METRIC = "robot overlap [mm s] in a run"
+_ERROR = "vision error sigma [mm]"
+
+
+def plots(table: Table, folder: Path) -> list[Path]:
+    """Write every plot the table has trials for; returns the files."""
+    base = table.where(mode="metric", failure="none", latency=0)
+    written = []
+    for scene in base.where(margin_mm=0.0).distinct("scene"):
+        rows = base.where(scene=scene, margin_mm=0.0)
+        if len(rows.distinct("search")) == 2 and len(rows.distinct("sigma_mm")) > 1:
+            written.append(_figure_8(rows, str(scene), folder))
+    margins = base.where(scene="cross4", search=True)
+    if len(margins.distinct("margin_mm")) > 1:
+        written.append(_figure_9(margins, folder))
+    return written
+
+
+def _means(rows: Table, metric: str) -> tuple[list, list[statistics.Estimate]]:
+    points, estimates = [], []
+    for sigma, at in rows.split("sigma_mm"):
+        if at.finished:
+            points.append(sigma)
+            estimates.append(statistics.mean(at.values(metric)))
+    order = np.argsort(points)
+    return [points[i] for i in order], [estimates[i] for i in order]
+
+
+def _figure_8(rows: Table, scene: str, folder: Path) -> Path:
+    n = rows.finished
+    title = f"Figure 8: search on and off, scene {scene} (metric mode, {n} runs)"
+    with figure(folder / f"figure8-{scene}.svg", title, _ERROR, _METRIC) as axes:
+        for search, label in ((False, "search off"), (True, "search on")):
+            interval_line(axes, *_means(rows.where(search=search), "overlap_mm_s"), label)
+        axes.set_yscale("symlog", linthresh=1.0)
+        axes.set_ylim(bottom=-0.05)
+        axes.legend()
+    return folder / f"figure8-{scene}.svg"
+
+
+def _figure_9(rows: Table, folder: Path) -> Path:
+    title = f"Figure 9: margins, search on, scene cross4 (metric mode, {rows.finished} runs)"
+    with figure(folder / "figure9-cross4.svg", title, _ERROR, _METRIC) as axes:
+        for margin in sorted(rows.distinct("margin_mm")):
+            points = _means(rows.where(margin_mm=margin), "overlap_mm_s")
+            interval_line(axes, *points, f"margin {margin:g} mm")
+        axes.set_ylim(bottom=0)
+        axes.legend()
+    return folder / "figure9-cross4.svg"
