@@ -32,7 +32,12 @@ def rotate(vector: ArrayLike, angle: ArrayLike) -> Array:
     """
     v = np.asarray(vector, dtype=np.float64)
     c, s = np.cos(angle), np.sin(angle)
-    return np.stack([c * v[..., 0] - s * v[..., 1], s * v[..., 0] + c * v[..., 1]], axis=-1)
+    x, y = v[..., 0], v[..., 1]
+    along = c * x - s * y
+    turned = np.empty((*along.shape, 2))
+    turned[..., 0] = along
+    turned[..., 1] = s * x + c * y
+    return turned
 
 
 def compose(T_a_b: ArrayLike, T_b_c: ArrayLike) -> Array:

@@ -75,6 +75,8 @@ class Group:
         self.command_latency = int(command_latency)
         self.names = tuple(f"{name}{i}" for i in range(self.n))
         self.faults = FaultSchedule(self.n)
+        # no component above this: neither the speed nor the yaw rate can be over its limit
+        self._always_allowed = min(platform.max_twist[0] / 2**0.5, platform.max_twist[1])
         self.sensors: dict[str, Sensor] = {}
         for key, sensor in platform.default_sensors().items():
             self.mount(sensor, key)
@@ -124,14 +126,17 @@ class Group:
             raise InvalidInputError(
                 f"{self.name}: a command must have shape ({self.n}, 3); got {twist.shape}"
             )
-        if not np.isfinite(twist).all():
+        largest = float(np.abs(twist).max())
+        if not largest < np.inf:
             bad = np.flatnonzero(~np.isfinite(twist).all(axis=1))
             names = ", ".join(self.names[i] for i in bad)
             raise InvalidInputError(f"a command must be finite; it is not for {names}")
-        allowed = self.platform.clamp(twist)
-        if allowed is not twist:
-            self.clamped += (allowed != twist).any(axis=1)
-        self._command = allowed
+        if largest > self._always_allowed:
+            allowed = self.platform.clamp(twist)
+            if allowed is not twist:
+                self.clamped += (allowed != twist).any(axis=1)
+                twist = allowed
+        self._command = twist
 
     @property
     def executed(self) -> Array:

@@ -8,17 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mjmr.geometry import wrap_angle
 from mjmr.loop import TickedSimulation
+from mjmr.ramp import integrate_ramp
 
 if TYPE_CHECKING:
     from mjmr.group import Group
     from mjmr.world import World
 
 Array = NDArray[np.float64]
-# Gauss-Legendre, five points on [0, 1]: exact for a ramp without turning, 1e-12 m with it
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
-_NODES, _WEIGHTS = (_NODES + 1) / 2, _WEIGHTS / 2
 
 
 class KinematicSimulation(TickedSimulation):
@@ -76,33 +73,13 @@ class KinematicSimulation(TickedSimulation):
         self._rate = (self._target - self._twist) / period
 
     def _advance(self, steps: int) -> None:
-        whole = steps == self.substeps
-        dt = self.control_period if whole else steps * self.timestep
-        twist, pose = self._twist, self._pose
-        end = self._target if whole else twist + self._rate * dt
-        mean = (twist + end) * 0.5
-        if pose[:, 2].any() or twist[:, 2].any() or end[:, 2].any():
-            shift = _turning_shift(pose[:, 2], twist, self._rate, dt)
-        else:
-            shift = mean[:, :2] * dt
-        moved = np.empty_like(pose)
-        moved[:, :2] = pose[:, :2] + shift
-        moved[:, 2] = wrap_angle(pose[:, 2] + mean[:, 2] * dt)
-        self._pose, self._twist = moved, end
+        dt = self.control_period if steps == self.substeps else steps * self.timestep
+        end = self._target if steps == self.substeps else self._twist + self._rate * dt
+        self._pose = integrate_ramp(self._pose, self._twist, end, dt)
+        self._twist = end
 
     def _physics_state(self) -> Array:
         return np.stack([self._pose, self._twist])
 
     def _set_physics_state(self, state: Array) -> None:
         self._pose, self._twist = state[0].copy(), state[1].copy()
-
-
-def _turning_shift(yaw: Array, twist: Array, rate: Array, dt: float) -> Array:
-    """Displacement (n, 2), world frame, of a body-frame ramp that turns; Gauss-Legendre."""
-    t = _NODES * dt
-    at = twist[:, None, :] + rate[:, None, :] * t[:, None]  # (n, 5, 3)
-    heading = yaw[:, None] + twist[:, 2:3] * t + 0.5 * rate[:, 2:3] * t * t
-    c, s = np.cos(heading), np.sin(heading)
-    vx = c * at[..., 0] - s * at[..., 1]
-    vy = s * at[..., 0] + c * at[..., 1]
-    return np.stack([vx @ _WEIGHTS, vy @ _WEIGHTS], axis=-1) * dt

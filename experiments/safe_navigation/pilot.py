@@ -60,11 +60,14 @@ class RawTracker:
             executed: Twists the robots say they execute, (n, 3), body frame.
         """
         lost = np.isnan(report[:, 0])
-        self.yaw = np.where(lost, self.yaw, report[:, 2])
+        some = lost.any()
+        self.yaw = np.where(lost, self.yaw, report[:, 2]) if some else report[:, 2]
         velocity = rotate(executed[:, :2], self.yaw)
-        reckoned = self._position + 0.5 * (self._velocity + velocity) * self._period
-        self._position = np.where(lost[:, None], reckoned, report[:, :2])
-        self._velocity = velocity
+        position = report[:, :2]
+        if some:
+            reckoned = self._position + 0.5 * (self._velocity + velocity) * self._period
+            position = np.where(lost[:, None], reckoned, position)
+        self._position, self._velocity = position, velocity
         return self._position, self._velocity
 
 
@@ -108,7 +111,6 @@ class Pilot:
         shuttle: The robots' goals.
         navigator: Plans, controls and searches.
         seconds: Wall time of this cycle's plan and search [s].
-        stops: Where this cycle's commands followed by braking end, (n, 2) [m]; for films.
     """
 
     def __init__(
@@ -133,7 +135,7 @@ class Pilot:
         self._tracker, self._predict = tracker, predict
         self._pending: deque[Array] = deque([np.zeros((n, 2))] * latency)
         self._sent: deque[Array] = deque([np.zeros((n, 3))] * (latency + 1))
-        self.stops = scene.starts.copy()
+        self._cycle = (scene.starts, np.zeros((n, 2)), np.zeros((n, 2)))
         self.seconds = 0.0
 
     def step(self, report: Array, executed: Array) -> Array:
@@ -160,14 +162,17 @@ class Pilot:
         if self._pending:
             self._pending.append(planar)
             self._pending.popleft()
-        self._note_stops(position, velocity, planar)
+        self._cycle = position, velocity, planar
         command = np.zeros((len(planar), 3))
         command[:, :2] = rotate(planar, -self._tracker.yaw)
         self._sent.append(command)
         return command
 
-    def _note_stops(self, position: Array, velocity: Array, command: Array) -> None:
+    @property
+    def stops(self) -> Array:
+        """Where the last commands followed by braking end, (n, 2) [m], world frame; for films."""
+        position, velocity, command = self._cycle
         config = self.navigator.config
         speed = np.hypot(command[:, 0], command[:, 1])[:, None]
         braking = command * speed / (2.0 * config.limits.deceleration)
-        self.stops = position + 0.5 * (velocity + command) * config.period + braking
+        return position + 0.5 * (velocity + command) * config.period + braking

@@ -32,7 +32,7 @@ def trial(
     Returns:
         Metrics; lengths in mm, as tables show them.
     """
-    world, robots, scene = build(condition)
+    world, robots, scene = build(condition, seed)
     if condition["mode"] == "physical":
         from mjmr.simulation import Simulation
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from mjmr.faults import Fault
 from mjmr.group import Group
+from mjmr.randomness import Streams
 from mjmr.robots.soccer_bot import SoccerBot
 from mjmr.sensors.localizer import Localizer
 from mjmr.world import World
@@ -20,6 +21,7 @@ from mjmr.world import World
 REACH = 2.1  # goals lie at x = +-REACH [m]
 _LANES = (1.2, 0.4, -0.4, -1.2)
 _LOSS = 0.05
+_SPREAD = 0.02  # [m]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,13 +75,20 @@ def _at(x: float, ys: Any) -> NDArray[np.float64]:
     return np.array([[x, y] for y in ys])
 
 
-def build(condition: Mapping[str, Any]) -> tuple[World, Group, Scene]:
-    """World, robots and scene of a condition."""
+def build(condition: Mapping[str, Any], seed: int) -> tuple[World, Group, Scene]:
+    """World, robots and scene of one trial.
+
+    Starts on the field are displaced by up to 20 mm along x and y, drawn from the seed: with exact
+    reports and no search nothing else differs from run to run.
+    """
     place = scene(condition["scene"])
+    starts = place.starts
+    if condition["scene"] in ("A", "cross4", "cross10"):
+        starts = starts + Streams(seed).generator("starts").uniform(-_SPREAD, _SPREAD, starts.shape)
     world = World.rectangle(4.9, 3.8, border=0.30)
     for x, y, length, width in place.boxes:
         world.add_box(x, y, length, width)
-    poses = np.column_stack([place.starts, np.zeros(len(place.starts))])
+    poses = np.column_stack([starts, np.zeros(len(starts))])
     robots = world.add_group(SoccerBot, poses, command_latency=condition["latency"])
     lossy = condition["failure"] == "reports-lost"
     robots.mount(
@@ -99,4 +108,4 @@ def build(condition: Mapping[str, Any]) -> tuple[World, Group, Scene]:
 
 def world(condition: Mapping[str, Any]) -> World:
     """World of a condition, for ``mjmr mjcf``."""
-    return build(condition)[0]
+    return build(condition, 0)[0]
