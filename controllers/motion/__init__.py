@@ -1,0 +1,23 @@
+"""Safe motion of several fast omnidirectional robots (Bruce and Veloso 2005)."""
+
+from controllers.motion.errt import ErrtConfig, Plan, Planner
+from controllers.motion.navigator import Navigator, NavigatorConfig
+from controllers.motion.plane import along_perpendicular, synchronised
+from controllers.motion.prediction import Piece, forward_predict, predict
+from controllers.motion.trapezoid import Limits, Profile, profile
+
+__all__ = [
+    "ErrtConfig",
+    "Limits",
+    "Navigator",
+    "NavigatorConfig",
+    "Piece",
+    "Plan",
+    "Planner",
+    "Profile",
+    "along_perpendicular",
+    "forward_predict",
+    "predict",
+    "profile",
+    "synchronised",
+]

@@ -1,0 +1,48 @@
+"""``mjmr export``."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+from tyro.conf import Positional
+
+from mjmr.cli.parsing import SizeName, StudyName, option, parse
+
+_MORE = """
+EXAMPLES
+  mjmr export safe-navigation trials.csv
+  mjmr export safe-navigation --size standard trials.csv
+
+EXIT CODES
+  0  the file was written
+  2  bad input, no results, or a file that cannot be written
+"""
+
+
+@dataclass(frozen=True)
+class Export:
+    """Write a study's results as CSV, also while a run is under way.
+
+    One line a trial: condition, seed, status, metrics, wall times (names that start with wall_),
+    error. Numbers are written so that they read back bit for bit.
+    """
+
+    study: StudyName
+    file: Annotated[Positional[Path], option("FILE.csv", "File to write; replaced if it exists.")]
+    size: SizeName = "quick"
+    out: Annotated[Path | None, option("DIR", "Results folder.", "renders/STUDY/SIZE")] = None
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Export results."""
+    a = parse(Export, "export", arguments, _MORE)
+    from mjmr.registry import load_study
+    from mjmr.runner import default_folder
+    from mjmr.store import export_csv
+
+    study = load_study(a.study)
+    study.size(a.size)
+    count = export_csv(a.out or default_folder(study, a.size), a.file)
+    print(f"{count} trials written to {a.file}")
+    return 0

@@ -1,0 +1,442 @@
+"""Running a study: trials, claims, files. The only writer of a results folder.
+
+What a run leaves in its folder: ``results.sqlite`` (every trial), ``claims.json``, ``claims.md``,
+``run.json`` (what was run, by which code), plots as SVG, ``film.mp4``.
+"""
+
+import contextlib
+import os
+import shlex
+import shutil
+import signal
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mjmr.claims import Verdict, judge_all, one_line
+from mjmr.conditions import parse_filter
+from mjmr.errors import InvalidInputError, MissingGLError, MjmrError
+from mjmr.files import write_atomically
+from mjmr.progress import Progress, doing, say, standard_output
+from mjmr.registry import load_study
+from mjmr.store import Outcome, Store, set_aside
+from mjmr.study import FilmOptions, Study, Trial
+from mjmr.table import NoTrialsError, Row, Table
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from mjmr.executor import Executor
+    from mjmr.verdicts import Difference
+
+GL_ADVICE = "no off-screen OpenGL: install libegl1 (Debian: apt install libegl1 libgl1-mesa-dri)"
+OK, FAILED, CHANGED, INTERRUPTED = 0, 1, 3, 130
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunOptions:
+    """What to run, and how.
+
+    Args:
+        study: Name, or dotted reference ``module:attribute``.
+        size: ``quick``, ``standard`` or ``full``.
+        seeds: Seeds of every condition; None takes what the size declares.
+        workers: Processes; None takes one for each CPU this process may use.
+        only: Conditions as texts ``key=value[,value...]``.
+        out: Results folder; None takes ``renders/STUDY/SIZE`` under the current folder.
+        film: Make the film if it is not there.
+        check: Compare verdicts with the committed ones.
+        accept: Write verdicts as the committed ones.
+        fresh: Set an existing results folder aside first.
+        retry: Compute failed trials again.
+
+    Raises:
+        InvalidInputError: Options that are out of range or exclude each other.
+    """
+
+    study: str
+    size: str = "quick"
+    seeds: int | None = None
+    workers: int | None = None
+    only: tuple[str, ...] = ()
+    out: Path | None = None
+    film: bool = True
+    check: bool = False
+    accept: bool = False
+    fresh: bool = False
+    retry: bool = False
+
+    def __post_init__(self):
+        for name, value in (("seeds", self.seeds), ("workers", self.workers)):
+            if value is not None and value < 1:
+                raise InvalidInputError(f"{name} must be at least 1, not {value}")
+        if self.check and self.accept:
+            raise InvalidInputError("--check and --accept exclude each other")
+        for flag, given in (("--check", self.check), ("--accept", self.accept)):
+            if given and (self.only or self.seeds is not None):
+                raise InvalidInputError(
+                    f"{flag} takes a whole size, since verdicts are committed for whole sizes: "
+                    "leave out --only and --seeds"
+                )
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunResult:
+    """How a run ended.
+
+    Args:
+        exit_code: 0 all trials finished; 1 any failed; 3 a verdict changed; 130 interrupted.
+        folder: Where the results are.
+        table: Every trial the size declares, finished or not.
+        verdicts: The claims judged; empty if interrupted.
+        differences: Where verdicts differ from the committed ones, if that was asked.
+    """
+
+    exit_code: int
+    folder: Path
+    table: Table
+    verdicts: list[Verdict] = field(default_factory=list)
+    differences: "list[Difference]" = field(default_factory=list)
+
+
+def default_folder(study: Study, size: str) -> Path:
+    """``renders/STUDY/SIZE`` under the current folder."""
+    return Path("renders") / study.name / size
+
+
+def run_study(
+    options: RunOptions,
+    console: "Console | None" = None,
+    messages: "Console | None" = None,
+    executor: "Executor | None" = None,
+) -> RunResult:
+    """Run what is not done yet, judge the claims, write the files.
+
+    Args:
+        options: What to run.
+        console: For the verdicts; None takes standard output.
+        messages: For progress and remarks; None takes standard error.
+        executor: Where trials are computed; None takes local processes.
+
+    Raises:
+        MjmrError: Bad input or an unusable results folder; nothing has been run then.
+    """
+    from rich.console import Console
+
+    from mjmr import verdicts as committed
+
+    messages = messages or Console(stderr=True)
+    study = load_study(options.study)
+    only = parse_filter(study.parameters, options.only)
+    trials = study.trials(options.size, options.seeds, only)
+    claims = study.load_claims()
+    expected = committed.committed(study, options.size) if options.check else {}
+    if options.accept and study.verdicts is None:
+        raise MjmrError(f"study {study.name} declares no verdicts file for --accept to write")
+    folder = options.out or default_folder(study, options.size)
+    if options.fresh:
+        aside = set_aside(folder)
+        if aside:
+            say(messages, f"set aside as {aside}")
+    run = _Run(options, study, trials, folder, messages)
+    try:
+        with Store(folder, run.meta()) as store:
+            complete = run.compute(store, executor)
+            asked = run.table(store, trials)
+            # Claims see all the size declares: with --only, the rest is "not run".
+            table = run.table(store, study.trials(options.size, options.seeds))
+            if not complete:
+                run.write_record(asked, [])
+                return run.interrupted(table)
+            verdicts = judge_all(claims, table, options.size)
+            troubles = run.write_files(asked, verdicts)
+            _print_verdicts(console, study, options.size, verdicts)
+            troubles += run.film()
+            run.write_record(asked, verdicts)
+    except KeyboardInterrupt:
+        return run.interrupted(None)
+    except OSError as e:
+        raise MjmrError(f"run in {folder} stopped: {e}") from e
+    failed = _tell_failures(messages, asked, verdicts)
+    for trouble in troubles:
+        say(messages, trouble)
+    found = committed.differences(expected, verdicts) if options.check else []
+    for difference in found:
+        say(messages, f"verdict changed: {difference}")
+    say(messages, f"results in {folder}")
+    code = FAILED if failed or troubles else CHANGED if found else OK
+    if options.accept:
+        if code != OK:
+            say(messages, "verdicts not accepted, since something failed")
+        else:
+            committed.accept(study, options.size, verdicts)
+            say(messages, f"verdicts written to {study.verdicts}")
+    return RunResult(
+        exit_code=code, folder=folder, table=table, verdicts=verdicts, differences=found
+    )
+
+
+class _Run:
+    """One run under way: what all of its steps need to know."""
+
+    def __init__(
+        self,
+        options: RunOptions,
+        study: Study,
+        trials: list[Trial],
+        folder: Path,
+        messages: "Console",
+    ):
+        self.options, self.study, self.trials = options, study, trials
+        self.folder, self.messages = folder, messages
+        self.begin = time.monotonic()
+        self.done, self.workers, self.computed = 0, 0, 0
+
+    def meta(self) -> dict[str, Any]:
+        from mjmr.provenance import git_revision, versions
+
+        return {
+            "digest": self.study.digest(self.options.size),
+            "study": self.study.name,
+            "size": self.options.size,
+            "versions": versions(),
+            "git_revision": git_revision(),
+        }
+
+    def compute(self, store: Store, executor: "Executor | None") -> bool:
+        """Compute and keep what is not there yet; False if Ctrl-C came between."""
+        settled = {"ok"} if self.options.retry else {"ok", "failed"}
+        kept = {(o.condition, o.seed) for o in store.outcomes() if o.status in settled}
+        pending = [trial for trial in self.trials if trial not in kept]
+        self.done = len(self.trials) - len(pending)
+        if not pending:
+            return True
+        if self.done:
+            say(self.messages, f"resuming: {self.done} of {len(self.trials)} trials are kept")
+        self._prepare()
+        if executor is None:
+            from mjmr.executor import LocalExecutor
+
+            self.workers = min(self.options.workers or cpu_count(), len(pending))
+            executor = LocalExecutor(self.workers)
+        with (
+            _interrupts() as stopped,
+            Progress(self.messages, self.done, len(self.trials)) as progress,
+            contextlib.closing(executor.run(self.options.study, pending, stopped)) as outcomes,
+        ):
+            for outcome in outcomes:
+                store.record(outcome)
+                self.done += 1
+                self.computed += 1
+                progress.advance(outcome.status == "ok")
+        return self.done == len(self.trials)
+
+    def _prepare(self) -> None:
+        self.study.resolve("trial")  # a study that cannot be imported is told once, here
+        prepare = self.study.resolve("prepare")
+        if prepare is None:
+            return
+        with doing(self.messages, "compiling (first run only) ..."):
+            call_study("prepare", prepare)
+
+    def table(self, store: Store, trials: list[Trial]) -> Table:
+        """These trials, with what is known of them."""
+        found = {(o.condition, o.seed): o for o in store.outcomes()}
+        return Table([_row(t, found.get(t)) for t in trials], self.study.parameters)
+
+    def write_files(self, asked: Table, verdicts: list[Verdict]) -> list[str]:
+        """Write claims, and plots of the trials asked for; returns what went wrong."""
+        from mjmr import reports
+
+        title = f"{self.study.name}, size {self.options.size}: {self.study.title}"
+        write_atomically(self.folder / "claims.json", reports.verdicts_json(verdicts))
+        write_atomically(self.folder / "claims.md", reports.verdicts_markdown(verdicts, title))
+        plots = self.study.plots
+        if plots is None or not asked.finished:
+            return []
+        folder = Path(tempfile.mkdtemp(prefix=".plots-", dir=self.folder))
+        try:
+            written = call_study("plots", self.study.resolve("plots"), asked.fresh(), folder)
+            for path in sorted(p for p in map(Path, written or ()) if p.is_file()):
+                os.replace(path, self.folder / path.name)
+        except NoTrialsError as e:  # with --only a plot may lack what it shows
+            say(self.messages, f"plots skipped: {e}")
+        except MjmrError as e:
+            return [str(e)]
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
+        return []
+
+    def film(self) -> list[str]:
+        """Make the film if it is wanted and not there; returns what went wrong."""
+        path = self.folder / "film.mp4"
+        if not self.options.film or self.study.film is None or path.exists():
+            return []
+        try:
+            with doing(self.messages, "making the film ..."):
+                make_film(self.study, path, FilmOptions(size=self.options.size))
+        except MissingGLError:
+            say(self.messages, f"{GL_ADVICE}; film skipped")
+        except MjmrError as e:
+            return [str(e)]
+        return []
+
+    def write_record(self, table: Table, verdicts: list[Verdict]) -> None:
+        """Write ``run.json``."""
+        from mjmr import reports
+
+        o = self.options
+        record = {
+            **self.meta(),
+            "seeds": o.seeds,
+            "only": list(o.only),
+            "workers": self.workers,
+            "film": o.film,
+            "trials": len(table),
+            "finished": table.finished,
+            "failed": table.failed,
+            "computed_now": self.computed,
+            "conditions": [
+                {"condition": dict(c), "seeds": len(table.where(**c))} for c in table.conditions
+            ],
+            "verdicts": {v.claim.id: v.verdict for v in verdicts},
+            "host_cpus": os.cpu_count(),
+            "wall_time_s": round(time.monotonic() - self.begin, 3),
+            "command": self._command(),
+        }
+        write_atomically(self.folder / "run.json", reports.to_json(record))
+
+    def interrupted(self, table: Table | None) -> RunResult:
+        say(
+            self.messages,
+            f"interrupted: {self.done} of {len(self.trials)} trials are kept in {self.folder}; "
+            f"resume with: {self._command()}",
+        )
+        rows = [_row(t, None) for t in self.trials]
+        return RunResult(
+            exit_code=INTERRUPTED,
+            folder=self.folder,
+            table=table or Table(rows, self.study.parameters),
+        )
+
+    def _command(self) -> str:
+        o = self.options
+        words = ["mjmr", "run", o.study, "--size", o.size]
+        words += ["--seeds", str(o.seeds)] if o.seeds is not None else []
+        words += ["--workers", str(o.workers)] if o.workers is not None else []
+        words += ["--only", *o.only] if o.only else []
+        words += ["--out", str(o.out)] if o.out is not None else []
+        words += [f"--{n}" for n in ("check", "accept") if getattr(o, n)]
+        words += [] if o.film else ["--no-film"]
+        return shlex.join(words)
+
+
+def make_film(study: Study, path: Path, options: FilmOptions) -> None:
+    """Make a study's film at ``path``: whole, or not at all.
+
+    Raises:
+        MissingGLError: No off-screen OpenGL.
+        MjmrError: The study has no film, or making it failed.
+    """
+    function = study.resolve("film")
+    if function is None:
+        raise MjmrError(f"study {study.name} has no film")
+    try:
+        folder = Path(tempfile.mkdtemp(prefix=".film-", dir=path.parent))
+    except OSError as e:
+        raise MjmrError(f"cannot write to {path.parent}: {e.strerror}") from e
+    try:
+        call_study("film", function, study, folder / path.name, options)
+        if not (folder / path.name).is_file():
+            raise MjmrError(f"film of {study.name}: nothing was written")
+        os.replace(folder / path.name, path)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def cpu_count() -> int:
+    """CPUs this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def debugging() -> bool:
+    """Whether tracebacks are wanted: ``MJMR_DEBUG=1``."""
+    return os.environ.get("MJMR_DEBUG", "") not in ("", "0")
+
+
+def call_study(role: str, function: Callable[..., Any], *arguments: Any) -> Any:
+    """Call a study's function; what it raises becomes one sentence that names its role.
+
+    Raises:
+        MissingGLError: As the function raised it.
+        NoTrialsError: As the function raised it.
+        MjmrError: For anything else the function raised, unless ``MJMR_DEBUG=1``.
+    """
+    try:
+        return function(*arguments)
+    except (MissingGLError, NoTrialsError):
+        raise
+    except Exception as e:
+        if debugging():
+            raise
+        raise MjmrError(f"{role} failed: {one_line(e)} (MJMR_DEBUG=1 shows where)") from e
+
+
+def _row(trial: Trial, outcome: Outcome | None) -> Row:
+    condition, seed = trial
+    if outcome is None:
+        return Row(condition, seed, "missing")
+    metrics = {**outcome.metrics, **outcome.wall}
+    return Row(condition, seed, outcome.status, metrics, outcome.error)
+
+
+def _print_verdicts(
+    console: "Console | None", study: Study, size: str, verdicts: Sequence[Verdict]
+) -> None:
+    from mjmr.reports import verdict_table
+
+    console = console or standard_output(140)
+    if verdicts:
+        console.print(verdict_table(verdicts, f"{study.name}, size {size}"))
+
+
+def _tell_failures(messages: "Console", table: Table, verdicts: Sequence[Verdict]) -> bool:
+    """Say which trials did not finish and which claims could not be evaluated; True if any."""
+    lost = [row for row in table.fresh().rows if row.status != "ok"]
+    for row in lost[:5]:
+        say(messages, f"trial failed: {row.condition} seed {row.seed}: {row.error}")
+    if len(lost) > 5:
+        say(messages, f"... and {len(lost) - 5} more; mjmr export lists them all")
+    if any(row.status == "no-gl" for row in lost):
+        say(messages, GL_ADVICE)
+    elif lost:
+        say(messages, "failed trials are kept as such; compute them again with --retry")
+    mistakes = [v for v in verdicts if v.error]
+    for verdict in mistakes:
+        text = verdict.error if debugging() else f"claim {verdict.claim.id}: {verdict.why}"
+        say(messages, text.rstrip())
+    return bool(lost or mistakes)
+
+
+@contextlib.contextmanager
+def _interrupts() -> Iterator[Callable[[], bool]]:
+    """Turn the first Ctrl-C into a flag, so that no write is cut short; a second one raises."""
+    stopped = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield stopped.is_set
+        return
+
+    def on_interrupt(*_: object) -> None:
+        if stopped.is_set():
+            raise KeyboardInterrupt
+        stopped.set()
+
+    before = signal.signal(signal.SIGINT, on_interrupt)
+    try:
+        yield stopped.is_set
+    finally:
+        signal.signal(signal.SIGINT, before)

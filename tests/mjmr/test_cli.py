@@ -1,0 +1,212 @@
+import csv
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from mjmr.cli import COMMANDS, main
+
+MAIN = "import sys; from mjmr.cli import main; sys.exit(main())"
+
+
+@pytest.fixture(autouse=True)
+def toys(monkeypatch, tmp_path):
+    entries = {"toy": "study", "toy-raise": "raising"}
+    told = " ".join(f"{name}=tests.toy_study:{where}" for name, where in entries.items())
+    monkeypatch.setenv("MJMR_STUDIES", told)
+    monkeypatch.delenv("MJMR_DEBUG", raising=False)
+    monkeypatch.chdir(tmp_path)
+
+
+BAD = {
+    "": "a command is missing: list, show, run",
+    "rum toy": "unknown command 'rum'; valid: run",
+    "run": "missing from mjmr run: STUDY",
+    "run tyo": "unknown study 'tyo'; valid: toy, toy-raise",
+    "run toy extra": "unrecognized options: extra",
+    "run toy --sise quick": "perhaps --size",
+    "run toy --size": "missing value for argument '--size'",
+    "run toy --size quik": "unknown size 'quik'; valid: quick",
+    "run toy --seeds 0": "--seeds must be a whole number of at least 1, not '0'",
+    "run toy --seeds -1": "--seeds must be a whole number of at least 1, not '-1'",
+    "run toy --seeds many": "--seeds must be a whole number",
+    "run toy --workers 0": "--workers must be a whole number",
+    "run toy --workers 1.5": "--workers must be a whole number",
+    "run toy --only bis=1": "unknown condition 'bis'; valid: bias",
+    "run toy --only bias=0.95": "unknown value of bias '0.95'; valid: 0.5, 0.9",
+    "run toy --only bias=much": "unknown value of bias 'much'",
+    "run toy --only bias": "expected key=value[,value...], not 'bias'",
+    "run toy --only bias=0.5 bias=0.9": "bias is given twice",
+    "run toy --only bias=1.0": "size quick of toy has no condition with bias=1.0",
+    "run toy --check": "no verdicts of toy are committed for size quick",
+    "run toy --check --seeds 2": "--check takes a whole size",
+    "run toy --check --only bias=0.5": "--check takes a whole size",
+    "run toy --check --accept": "--check and --accept exclude each other",
+    "run toy --out file/below": "cannot",
+    "run nowhere.at_all:study": "cannot load nowhere.at_all:study",
+    "show": "missing from mjmr show: STUDY",
+    "show toi": "unknown study 'toi'; valid: toy",
+    "film toy --camera side": "unknown camera 'side'; valid: ",
+    "film toy --look good": "unknown look 'good'; valid: ",
+    "film toy --out file/below.mp4": "cannot write to file",
+    "mjcf toy": "missing from mjmr mjcf: FILE.xml",
+    "mjcf toy a.xml mod=metric": "unknown condition 'mod'; valid: mode",
+    "mjcf toy a.xml mode=metric,physical": "mode takes one value here",
+    "mjcf toy nowhere/a.xml": "cannot write nowhere/a.xml",
+    "bench tyo": "unknown study 'tyo'",
+    "export toy a.csv": "no results in renders/toy/quick; make them with mjmr run",
+    "export toy a.csv --size hug": "unknown size 'hug'",
+    "list all": "unrecognized options: all",
+}
+
+
+@pytest.mark.parametrize("line", BAD)
+def test_bad_input_is_one_sentence_and_exit_2(line, capsys, tmp_path):
+    (tmp_path / "file").write_text("")
+    assert main(line.split()) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.count("\n") == 1
+    assert err.startswith("mjmr: ")
+    assert BAD[line] in err
+    assert [p.name for p in tmp_path.iterdir()] == ["file"]
+
+
+def test_help_of_every_command_reads_like_a_manual(capsys):
+    assert main(["--help"]) == 0
+    text = capsys.readouterr().out
+    for command in COMMANDS:
+        assert f"\n  {command}" in text
+        with pytest.raises(SystemExit) as e:
+            main([command, "--help"])
+        assert e.value.code == 0
+        told = capsys.readouterr().out
+        assert f"usage: mjmr {command}" in told
+        assert "EXAMPLES" in told
+        assert "EXIT CODES" in told
+        assert max(len(line) for line in told[told.index("EXAMPLES") :].splitlines()) <= 100
+
+
+def test_list_and_show(capsys):
+    assert main(["list"]) in (0, 1)  # 1 if an installed study is broken
+    assert "toy-raise" in capsys.readouterr().out
+    assert main(["show", "toy"]) == 0
+    shown = capsys.readouterr().out
+    for words in ("Ars Conjectandi", "0.0, 0.5, 0.9, 1.0", "standard", "82", "bias-shows", "> 0"):
+        assert words in shown
+
+
+def test_a_broken_study_does_not_hide_the_others(capsys, monkeypatch):
+    monkeypatch.setenv("MJMR_STUDIES", "toy=tests.toy_study:study lost=nowhere.at_all:study")
+    assert main(["list"]) == 1
+    out, err = capsys.readouterr()
+    assert "toy" in out
+    assert "lost: cannot load nowhere.at_all:study" in err
+
+
+def test_from_run_to_export(capsys, tmp_path):
+    assert main(["run", "toy", "--workers", "1", "--no-film", "--only", "bias=0.9"]) == 0
+    out, err = capsys.readouterr()
+    assert "bias-shows" in out
+    assert "results in renders/toy/quick" in err
+    assert json.loads((tmp_path / "renders/toy/quick/run.json").read_text())["only"] == ["bias=0.9"]
+    assert main(["export", "toy", "trials.csv"]) == 0
+    with (tmp_path / "trials.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [r["seed"] for r in rows] == ["0", "1", "2", "3"]
+    assert {r["status"] for r in rows} == {"ok"}
+
+
+def test_mjcf_film_bench_version(capsys, tmp_path, monkeypatch):
+    assert main(["mjcf", "toy", "model.xml", "mode=physical"]) == 0
+    assert (tmp_path / "model.xml").read_text() == "<mujoco model='physical'/>"
+    assert (
+        main(
+            [
+                "film",
+                "toy",
+                "--camera",
+                "chase",
+                "--look",
+                "fine",
+                "--size",
+                "full",
+                "--out",
+                "a.mp4",
+            ]
+        )
+        == 0
+    )
+    assert (tmp_path / "a.mp4").read_bytes() == b"toy chase fine full"
+    assert main(["film", "toy"]) == 0
+    assert (tmp_path / "renders/toy/quick/film.mp4").exists()
+    monkeypatch.setenv("TOY_FILM", "gl")
+    capsys.readouterr()
+    assert main(["film", "toy"]) == 1
+    assert "libegl1" in capsys.readouterr().err
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    assert main(["bench", "toy"]) == 0
+    assert "tosses a second: 1e6" in capsys.readouterr().out
+    assert main(["bench"]) == 2
+    assert main(["--version"]) == 0
+    assert "mjmr 0." in capsys.readouterr().out
+
+
+def test_tracebacks_only_on_request(monkeypatch, capsys):
+    monkeypatch.setattr("mjmr.registry.load_study", lambda name: 1 / 0)
+    assert main(["show", "toy"]) == 1
+    assert capsys.readouterr().err == (
+        "mjmr: unexpected ZeroDivisionError: division by zero (MJMR_DEBUG=1 shows where)\n"
+    )
+    monkeypatch.setenv("MJMR_DEBUG", "1")
+    with pytest.raises(ZeroDivisionError):
+        main(["show", "toy"])
+
+
+def test_help_and_list_load_nothing_heavy():
+    code = (
+        "import sys\nfrom mjmr.cli import main\nmain(['--help'])\nmain(['list'])\n"
+        "heavy = {'mujoco', 'numba', 'matplotlib', 'scipy', 'cv2', 'pebble', 'dm_control'}\n"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    # Installed studies are not the toy's doing, so only it and what mjmr loads are looked at.
+    environment = {**os.environ, "MJMR_STUDIES": "cheap=tests.toy_cheap:study"}
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, env=environment
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+def test_a_reader_that_leaves_early_is_no_error():
+    for words in (["--help"], ["show", "toy"]):
+        process = subprocess.Popen(
+            [sys.executable, "-c", MAIN, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+        )
+        assert process.stdout is not None
+        process.stdout.close()
+        assert process.stderr is not None
+        assert process.stderr.read() == b""
+        assert process.wait() == 141
+        process.stderr.close()
+
+
+def test_complaints_are_sentences_in_any_locale():
+    environment = {**os.environ, "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONIOENCODING": "ascii"}
+    for words in (["run", "toy", "--sise", "3"], ["run"], ["run", "toy", "--only", "bias=\xe9"]):
+        done = subprocess.run(
+            [sys.executable, "-c", MAIN, *words], capture_output=True, env=environment
+        )
+        assert done.returncode == 2
+        assert done.stderr.startswith(b"mjmr: ")
+        assert done.stderr.count(b"\n") == 1
+        assert b"|" not in done.stderr
+
+
+def test_failed_trials_are_exit_1_without_traceback(capsys):
+    assert main(["run", "toy-raise", "--workers", "1", "--no-film"]) == 1
+    out, err = capsys.readouterr()
+    assert "the coin rolled away" in err
+    assert "Traceback" not in out + err

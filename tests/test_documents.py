@@ -1,0 +1,80 @@
+"""The README's script and the pages of docs/ are run, not only read."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def blocks(path: Path, language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```", path.read_text(), re.M | re.S)
+
+
+def run(command, folder, **environment):
+    return subprocess.run(
+        command,
+        cwd=folder,
+        env=os.environ | environment,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+
+
+@pytest.mark.slow
+def test_the_readme_script_runs_and_makes_a_film(tmp_path):
+    scripts = [b for b in blocks(ROOT / "README.md", "python") if "Film" in b]
+    assert len(scripts) == 1
+    lines = [line for line in scripts[0].splitlines() if line.strip()]
+    assert len(lines) <= 24, "the README promises a script of about twenty lines"
+    script = tmp_path / "script.py"
+    script.write_text(scripts[0])
+    done = run([sys.executable, str(script)], tmp_path)
+    assert done.returncode == 0, done.stderr
+    (film,) = tmp_path.glob("*.mp4")
+    import av
+
+    with av.open(str(film)) as container:
+        stream = container.streams.video[0]
+        assert stream.codec_context.name == "h264"
+        assert stream.frames >= 5 * 30
+
+
+@pytest.mark.slow
+def test_the_page_on_adding_a_system_runs(tmp_path):
+    page = ROOT / "docs" / "add-a-system.md"
+    for block in blocks(page, "python"):
+        name = re.match(r"# file: (\S+)\n", block)
+        assert name, "every Python block of this page is a file"
+        path = tmp_path / name[1]
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(block)
+    commands = [b for b in blocks(page, "sh") if "mjmr run" in b]
+    assert len(commands) == 1
+    shell = commands[0].replace("--size standard --only gain=2.0", "--seeds 1 --out again")
+    done = run(
+        ["bash", "-euo", "pipefail", "-c", shell],
+        tmp_path,
+        PATH=f"{Path(sys.executable).parent}:{os.environ['PATH']}",
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    claims = (tmp_path / "renders" / "rendezvous" / "quick" / "claims.json").read_text()
+    assert '"verdict": "holds"' in claims
+
+
+def test_every_committed_picture_the_readme_shows_is_there():
+    for target in re.findall(r"!\[[^]]*\]\(([^)]+)\)", (ROOT / "README.md").read_text()):
+        assert (ROOT / target).is_file(), target
+
+
+def test_every_page_a_document_links_to_is_there():
+    for page in [ROOT / "README.md", *ROOT.glob("docs/*.md")]:
+        for target in re.findall(r"(?<!!)\[[^]]*\]\(([^)#]+)\)", page.read_text()):
+            if not target.startswith("http"):
+                assert (page.parent / target).exists(), f"{page.name} links to {target}"
