@@ -17,9 +17,7 @@ def conditions() -> str:
     return f"{platform.machine()}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}; {kept}"
 
 
-def interleave(
-    jobs: Mapping[str, Callable[[], float]], rounds: int = 5
-) -> dict[str, np.ndarray]:
+def interleave(jobs: Mapping[str, Callable[[], float]], rounds: int = 5) -> dict[str, np.ndarray]:
     """Run every job once a round, in turn, so that a noisy machine hits all alike.
 
     Args:
@@ -52,9 +50,7 @@ def core() -> str:
         figures = interleave({"loop": loop, "bare": bare}, rounds=7)
         ratio = figures["loop"] / figures["bare"]
         factor = seconds / figures["loop"]
-        lines.append(
-            f"  {n:3d} soccer robots: {spread(ratio)}; loop {spread(factor)} x real time"
-        )
+        lines.append(f"  {n:3d} soccer robots: {spread(ratio)}; loop {spread(factor)} x real time")
     return "\n".join(lines)
 
 

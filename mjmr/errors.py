@@ -45,6 +45,12 @@ class SimulationDivergedError(MjmrError):
     snapshots: tuple[Any, ...] = ()
 
 
+GL_ADVICE = (
+    "no off-screen OpenGL: install libegl1 (Debian: apt install libegl1 libgl1-mesa-dri) and set "
+    "MUJOCO_GL=egl, or import mjmr before mujoco"
+)
+
+
 class MissingGLError(MjmrError):
     """No off-screen OpenGL is available; everything without cameras still runs."""
 
@@ -52,6 +58,4 @@ class MissingGLError(MjmrError):
 def nearest_first(name: str, valid: list[str]) -> list[str]:
     """Order ``valid`` by likeness to ``name``, most alike first, ties as given."""
     low = name.lower()
-    return sorted(
-        valid, key=lambda v: -difflib.SequenceMatcher(None, low, v.lower()).ratio()
-    )
+    return sorted(valid, key=lambda v: -difflib.SequenceMatcher(None, low, v.lower()).ratio())

@@ -215,7 +215,11 @@ def _watch(parent: int) -> None:
 def _trial_function(study: str) -> Callable[..., Any]:
     from mjmr.registry import load_study
 
-    return load_study(study).resolve("trial")
+    loaded = load_study(study)
+    prepare = loaded.resolve("prepare")
+    if prepare is not None:
+        prepare()  # what the driver has compiled is loaded here, not inside the first trial
+    return loaded.resolve("trial")
 
 
 def compute(study: str, condition: Condition, seed: int) -> Outcome:

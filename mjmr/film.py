@@ -2,59 +2,22 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from mjmr.errors import InvalidInputError, UnknownNameError
+from mjmr.errors import InvalidInputError
+from mjmr.film_options import FilmOptions
 from mjmr.overlay import View, draw_notes, draw_text, draw_trails, palette
 from mjmr.recording import Recording
 from mjmr.render import Renderer
 from mjmr.video import VideoWriter
 
-CAMERAS = ("overview", "chase")
 MAX_SECONDS = 60.0
 _HEADER = 44
 _TRAIL = 1.2  # s
-
-
-@dataclass(frozen=True, kw_only=True)
-class FilmOptions:
-    """How a film looks.
-
-    Attributes:
-        camera: ``"overview"``: the whole world from above; ``"chase"``: behind one robot.
-        follow: The robot that ``chase`` follows, index in the team.
-        look: ``"draft"`` or ``"fine"`` (shadows, smooth edges; several times slower).
-        width: [px], even.
-        height: [px], even.
-        fps: Pictures a second.
-        speed: Simulated seconds shown a second; None: real time, faster only where the film would
-            exceed a minute.
-    """
-
-    camera: str = "overview"
-    follow: int = 0
-    look: str = "draft"
-    width: int = 1280
-    height: int = 720
-    fps: int = 30
-    speed: float | None = None
-
-    def __post_init__(self):
-        if self.camera not in CAMERAS:
-            raise UnknownNameError("camera", self.camera, CAMERAS)
-        if self.width % 2 or self.height % 2 or min(self.width, self.height) < 120:
-            raise InvalidInputError(
-                f"a film's size must be even and at least 120 px; got {self.width}x{self.height}"
-            )
-        if self.fps < 1:
-            raise InvalidInputError(f"fps must be at least 1; got {self.fps}")
-        if self.speed is not None and not self.speed > 0:
-            raise InvalidInputError(f"speed must be positive; got {self.speed}")
 
 
 class Film:
@@ -182,9 +145,7 @@ class _Panel:
         view = View(*renderer.view(), renderer.width, renderer.height)
         back = max(0, index - round(_TRAIL / recording.period))
         draw_trails(image, view, self._poses[back : index + 1 : 3, :, :2], self._colours)
-        draw_notes(
-            image, view, poses, recording.team.radii, recording.notes(index), self._colours
-        )
+        draw_notes(image, view, poses, recording.team.radii, recording.notes(index), self._colours)
         heads = view.ground(poses[:, :2], z=0.16)
         for i, colour in enumerate(self._colours):
             draw_text(image, str(i), (heads[i, 0] + 14, heads[i, 1] - 10), 0.45, colour)

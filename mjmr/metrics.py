@@ -49,9 +49,7 @@ class OverlapMeter:
         if self._previous is not None:
             start, before = self._previous
             period = simulation.control_period
-            total, depth = pair_overlap(
-                start, before, velocity, self._radii, period, self._samples
-            )
+            total, depth = pair_overlap(start, before, velocity, self._radii, period, self._samples)
             if total > 0.0:
                 self.robots += total
                 self.deepest = max(self.deepest, depth)
@@ -68,9 +66,7 @@ def _world_velocity(pose: Array, twist: Array) -> Array:
     if not yaw.any():
         return np.ascontiguousarray(twist[:, :2])
     c, s = np.cos(yaw), np.sin(yaw)
-    return np.column_stack(
-        [c * twist[:, 0] - s * twist[:, 1], s * twist[:, 0] + c * twist[:, 1]]
-    )
+    return np.column_stack([c * twist[:, 0] - s * twist[:, 1], s * twist[:, 0] + c * twist[:, 1]])
 
 
 class ContactMeter:

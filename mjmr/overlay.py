@@ -16,7 +16,7 @@ _SHIFT = 4  # cv2 takes sub-pixel coordinates as fixed point with this many bits
 
 
 def palette(n: int) -> list[Rgb]:
-    """n clearly different bright colours, 0 to 255."""
+    """N clearly different bright colours, 0 to 255."""
     hues = [(0.12 + k * 0.618034) % 1.0 for k in range(n)]
     return [
         tuple(round(255 * c) for c in colorsys.hsv_to_rgb(h, 0.55, 1.0))  # pyright: ignore
@@ -79,7 +79,7 @@ def draw_ring(
 ) -> None:
     """Draw a circle on the floor: centre (2,) and radius [m]."""
     if np.isfinite(centre).all():
-        draw_line(picture, view.ground((centre + radius * _CIRCLE.T)), colour, thickness)
+        draw_line(picture, view.ground(centre + radius * _CIRCLE.T), colour, thickness)
 
 
 def draw_text(

@@ -24,9 +24,7 @@ class Recording:
         period: Between two records [s].
     """
 
-    def __init__(
-        self, simulation: "TickedSimulation", caption: Callable[[], str] | None = None
-    ):
+    def __init__(self, simulation: "TickedSimulation", caption: Callable[[], str] | None = None):
         """Start recording.
 
         Args:

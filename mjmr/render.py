@@ -7,13 +7,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from mjmr.errors import MissingGLError, UnknownNameError
-
-LOOKS = ("draft", "fine")
-GL_HELP = (
-    "no off-screen OpenGL: install EGL (Debian: apt install libegl1 libgl1-mesa-dri) "
-    "and set MUJOCO_GL=egl, or import mjmr before mujoco"
-)
+from mjmr.errors import GL_ADVICE, MissingGLError, UnknownNameError
+from mjmr.film_options import LOOKS
 
 
 class Renderer:
@@ -44,7 +39,7 @@ class Renderer:
         try:
             self._renderer = mujoco.Renderer(model, height, width)
         except Exception as error:  # each GL backend raises its own kind
-            raise MissingGLError(GL_HELP) from error
+            raise MissingGLError(GL_ADVICE) from error
         self.model, self.width, self.height = model, width, height
         self._fine = look == "fine"
         self._option = mujoco.MjvOption()

@@ -13,30 +13,39 @@ if TYPE_CHECKING:
 _COLOURS = {HOLDS: "green", FAILS: "red", INCONCLUSIVE: "yellow", NOT_TESTABLE: "dim"}
 
 
-def verdict_table(verdicts: Sequence[Verdict], title: str) -> "RichTable":
-    """Table for the terminal: claim, published, measured, bound, verdict."""
+def verdict_table(verdicts: Sequence[Verdict], title: str, size: str) -> "RichTable":
+    """Table for the terminal of the claims this size decides; ``claims.md`` has them all.
+
+    Args:
+        verdicts: The verdicts.
+        title: Above the table.
+        size: Whose claims to show.
+    """
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(title=title, title_justify="left", show_lines=True)
-    widest = max((len(v.claim.id) for v in verdicts), default=0)
-    table.add_column("claim", ratio=4, min_width=widest, overflow="fold")
-    for header, ratio in (("published", 2), ("measured", 3), ("bound", 2)):
-        table.add_column(header, ratio=ratio, overflow="fold")
-    table.add_column("verdict", ratio=3, overflow="fold")
+    table = Table(title=title, title_justify="left")
+    table.add_column("claim", no_wrap=True)
+    for header in ("published", "measured", "bound", "verdict"):
+        table.add_column(header, overflow="fold")
     for v in verdicts:
-        claim = Text(v.claim.id, "bold").append(f"\n{v.claim.text}", "not bold")
-        verdict = Text(v.verdict, _COLOURS[v.verdict])
-        if v.why:
-            verdict.append(f"\n{v.why}", "dim")
-        table.add_row(
-            claim,
-            Text(v.claim.published),
-            Text(_measured(v)),
-            Text(_bound(v)),
-            verdict,
-        )
+        if size in v.claim.sizes:
+            verdict = Text(v.verdict, _COLOURS[v.verdict])
+            if v.why:
+                verdict.append(f": {v.why}", "dim")
+            row = v.claim.published, _measured(v), _bound(v)
+            table.add_row(Text(v.claim.id, "bold"), *map(Text, row), verdict)
     return table
+
+
+def undecided_line(verdicts: Sequence[Verdict], size: str) -> str:
+    """Names the claims that other sizes decide; empty if there are none."""
+    others = [v for v in verdicts if size not in v.claim.sizes]
+    if not others:
+        return ""
+    sizes = list(dict.fromkeys(s for v in others for s in v.claim.sizes))
+    names = ", ".join(v.claim.id for v in others)
+    return f"decided at size {' or '.join(sizes)}, not at {size}: {names}"
 
 
 def verdicts_markdown(verdicts: Sequence[Verdict], title: str) -> str:

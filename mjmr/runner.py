@@ -19,12 +19,13 @@ from typing import TYPE_CHECKING, Any
 
 from mjmr.claims import Verdict, judge_all, one_line
 from mjmr.conditions import parse_filter
-from mjmr.errors import InvalidInputError, MissingGLError, MjmrError
+from mjmr.errors import GL_ADVICE, InvalidInputError, MissingGLError, MjmrError
 from mjmr.files import write_atomically
+from mjmr.film_options import FilmOptions
 from mjmr.progress import Progress, doing, say, standard_output
 from mjmr.registry import load_study
 from mjmr.store import Outcome, Store, set_aside
-from mjmr.study import FilmOptions, Study, Trial
+from mjmr.study import Study, Trial
 from mjmr.table import NoTrialsError, Row, Table
 
 if TYPE_CHECKING:
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
     from mjmr.executor import Executor
     from mjmr.verdicts import Difference
 
-GL_ADVICE = "no off-screen OpenGL: install libegl1 (Debian: apt install libegl1 libgl1-mesa-dri)"
 OK, FAILED, CHANGED, INTERRUPTED = 0, 1, 3, 130
 
 
@@ -278,7 +278,7 @@ class _Run:
             return []
         try:
             with doing(self.messages, "making the film ..."):
-                make_film(self.study, path, FilmOptions(size=self.options.size))
+                make_film(self.study, path, FilmOptions())
         except MissingGLError:
             say(self.messages, f"{GL_ADVICE}; film skipped")
         except MjmrError as e:
@@ -397,11 +397,13 @@ def _row(trial: Trial, outcome: Outcome | None) -> Row:
 def _print_verdicts(
     console: "Console | None", study: Study, size: str, verdicts: Sequence[Verdict]
 ) -> None:
-    from mjmr.reports import verdict_table
+    from mjmr.reports import undecided_line, verdict_table
 
     console = console or standard_output(140)
     if verdicts:
-        console.print(verdict_table(verdicts, f"{study.name}, size {size}"))
+        console.print(verdict_table(verdicts, f"{study.name}, size {size}", size))
+        if line := undecided_line(verdicts, size):
+            console.print(line, style="dim")
 
 
 def _tell_failures(messages: "Console", table: Table, verdicts: Sequence[Verdict]) -> bool:

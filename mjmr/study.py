@@ -58,29 +58,6 @@ class Size:
 
 
 @dataclass(frozen=True, kw_only=True)
-class FilmOptions:
-    """How a film is to look.
-
-    Args:
-        camera: ``overview`` or ``chase``.
-        look: ``draft`` (fast) or ``fine``.
-        size: Size of the run it belongs to.
-    """
-
-    camera: str = "overview"
-    look: str = "draft"
-    size: str = "quick"
-
-    def __post_init__(self):
-        for kind, given, valid in (
-            ("camera", self.camera, ("overview", "chase")),
-            ("look", self.look, ("draft", "fine")),
-        ):
-            if given not in valid:
-                raise UnknownNameError(kind, given, valid)
-
-
-@dataclass(frozen=True, kw_only=True)
 class Study:
     """A published system's experiment.
 
@@ -95,7 +72,7 @@ class Study:
             and seed give the same bits, except for names that start with ``wall_``: wall-clock
             times, kept in a table of their own. ``MissingGLError`` marks the trial ``no-gl``.
         claims: ``() -> list[Claim]``, or the list.
-        film: ``(study, path, options: FilmOptions) -> None``: writes H.264 to ``path``.
+        film: ``(study, path, options: mjmr.film_options.FilmOptions) -> None``: writes H.264 to ``path``.
         plots: ``(table, folder) -> list of paths``: writes SVG files into ``folder``.
         world: ``(condition) -> object`` with ``to_xml() -> str``, for ``mjmr mjcf``.
         bench: ``() -> str | Mapping``: measures speed, for ``mjmr bench``.

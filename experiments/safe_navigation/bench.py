@@ -15,9 +15,7 @@ def bench() -> str:
     from experiments.safe_navigation import study
 
     prepare()
-    return "\n".join(
-        [conditions(), *_planning(study), *_real_time(study), *_workers(study)]
-    )
+    return "\n".join([conditions(), *_planning(study), *_real_time(study), *_workers(study)])
 
 
 def _planning(study: Any) -> list[str]:

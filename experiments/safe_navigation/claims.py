@@ -12,6 +12,8 @@ from mjmr import statistics
 from mjmr.claims import Bound, Claim, Evidence, Table
 
 _EXACT = 1e-9  # mm s
+_ALL = ("quick", "standard", "full")
+_LARGE = ("standard", "full")
 _SIGMAS = (1.0, 2.0, 3.0, 4.0, 5.0)
 
 
@@ -43,6 +45,7 @@ def _search_reduces() -> list[Claim]:
                     "over sigma"
                 ),
                 bound=Bound("<=", 0.05),
+                sizes=_ALL if scene == "cross4" else _LARGE,
                 needs={"mode": "metric", "scene": scene, "margin_mm": 0.0, "failure": "none",
                        "latency": 0},
                 evaluate=_worst_ratio,
@@ -105,6 +108,7 @@ def _exactly_zero() -> list[Claim]:
             how="robot pairs, depth x time, exact reports and commands; largest of all runs",
             bound=Bound("<=", _EXACT),
             unit="mm s",
+            sizes=_ALL if scene == "cross4" or failure == "none" else _LARGE,
             needs={"mode": "metric", "scene": scene, "sigma_mm": 0.0, "margin_mm": 0.0,
                    "search": True, "failure": failure, "latency": 0},
             evaluate=_maximum("overlap_mm_s"),
@@ -195,6 +199,7 @@ def _overlap_separates() -> Claim:
         how="two pairs start 60 and 80 mm deep in each other; last instant of overlap, worst run",
         bound=Bound("<=", 1.0),
         unit="s",
+        sizes=_ALL,
         needs={"mode": "metric", "scene": "overlap"},
         evaluate=_maximum("last_overlap_s"),
     )
@@ -209,6 +214,7 @@ def _latency() -> list[Claim]:
             how="robot pairs, depth x time, cross4; largest of all runs",
             bound=Bound("<=", _EXACT),
             unit="mm s",
+            sizes=_ALL,
             needs={**needs, "predict": True},
             evaluate=_maximum("overlap_mm_s"),
         ),
@@ -218,6 +224,7 @@ def _latency() -> list[Claim]:
             how="robot pairs, depth x time, cross4; mean of runs",
             bound=Bound(">", 0.1),
             unit="mm s",
+            sizes=_ALL,
             needs={**needs, "predict": False},
             evaluate=lambda table: Evidence.of(statistics.mean(table.values("overlap_mm_s"))),
         ),
@@ -235,6 +242,7 @@ def _price() -> list[Claim]:
             text="not in the paper: goals reached with the search / without it",
             how="goals reached in 30 s, exact commands, sigma 0; ratio of means on / off",
             bound=Bound(">=", bound),
+            sizes=_LARGE if scene == "cross10" else _ALL,
             needs={"mode": "metric", "scene": scene, "sigma_mm": 0.0, "margin_mm": 0.0,
                    "failure": "none", "latency": 0},
             evaluate=evaluate,
@@ -254,6 +262,7 @@ def _physical() -> list[Claim]:
             ),
             bound=Bound("<=", 0.0),
             unit="s",
+            sizes=_LARGE if scene == "cross10" else _ALL,
             needs={"mode": "physical", "scene": scene, "search": True, "margin_mm": 1.0},
             evaluate=_maximum("contact_s"),
         )
@@ -266,6 +275,7 @@ def _physical() -> list[Claim]:
             how="planar drive in MuJoCo, EKF, cross4, search off; mean contact time of a run",
             bound=Bound(">", 1.0),
             unit="s",
+            sizes=_ALL,
             needs={"mode": "physical", "scene": "cross4", "search": False},
             evaluate=lambda table: Evidence.of(statistics.mean(table.values("contact_s"))),
         )
@@ -283,6 +293,7 @@ def _physical() -> list[Claim]:
                 how="one robot shuttling 4.2 m in MuJoCo; slope of its true speed",
                 bound=bound,
                 unit=unit,
+                sizes=_ALL,
                 needs={"mode": "physical", "scene": "straight"},
                 evaluate=_maximum(metric),
             )

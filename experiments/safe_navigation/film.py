@@ -6,9 +6,10 @@ from typing import Any
 
 from experiments.safe_navigation.trial import trial
 from mjmr.film import Film
+from mjmr.film_options import FilmOptions
 from mjmr.loop import TickedSimulation
 from mjmr.recording import Recording
-from mjmr.study import FilmOptions, Study
+from mjmr.study import Study
 
 _SECONDS = 15.0
 _SEED = 0

@@ -42,9 +42,7 @@ def _whole(seeds: int, zero_seeds: int, physical_seeds: int) -> tuple[Grid, ...]
         ),
         Grid(scene="overlap", duration=5.0, seeds=zero_seeds),
         Grid(scene="cross4", latency=1, predict=(True, False), seeds=zero_seeds),
-        Grid(
-            mode="physical", scene=("A", *_CROSSES), margin_mm=1.0, seeds=physical_seeds
-        ),
+        Grid(mode="physical", scene=("A", *_CROSSES), margin_mm=1.0, seeds=physical_seeds),
         Grid(mode="physical", scene="cross4", search=False, seeds=physical_seeds),
         Grid(mode="physical", scene="straight", duration=10.0, seeds=1),
     )

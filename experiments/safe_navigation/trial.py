@@ -51,9 +51,7 @@ def trial(
         samples=scene.samples,
         plan_around_robots=scene.sees_robots,
     )
-    navigator = Navigator(
-        world.bounds, world.boxes, robots.n, config, simulation.rng("navigator")
-    )
+    navigator = Navigator(world.bounds, world.boxes, robots.n, config, simulation.rng("navigator"))
     pilot = Pilot(scene, navigator, tracker, condition["latency"], condition["predict"])
     motion = _Motion(simulation, robots) if condition["scene"] == "straight" else None
     recording = record(simulation, lambda: _caption(meter)) if record else None

@@ -54,9 +54,7 @@ def scene(name: str) -> Scene:
             starts=_at(-REACH, lanes), far=_at(REACH, lanes), near=_at(-REACH, lanes), boxes=boxes
         )
     if name == "straight":
-        return Scene(
-            starts=_at(-REACH, [0.0]), far=_at(REACH, [0.0]), near=_at(-REACH, [0.0])
-        )
+        return Scene(starts=_at(-REACH, [0.0]), far=_at(REACH, [0.0]), near=_at(-REACH, [0.0]))
     lanes = np.linspace(-1.8, 1.8, 10) if name == "cross10" else np.array(_LANES)
     cross = Scene(
         starts=_at(-REACH, lanes),

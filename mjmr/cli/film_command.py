@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Annotated
 
 from mjmr.cli.parsing import SizeName, StudyName, option, parse
-from mjmr.errors import MissingGLError, MjmrError
+from mjmr.errors import GL_ADVICE, MissingGLError, MjmrError
 
 _MORE = """
 EXAMPLES
@@ -40,13 +40,13 @@ class Film:
 def main(arguments: Sequence[str]) -> int:
     """Make a film."""
     a = parse(Film, "film", arguments, _MORE)
+    from mjmr.film_options import FilmOptions
     from mjmr.registry import load_study
-    from mjmr.runner import GL_ADVICE, default_folder, make_film
-    from mjmr.study import FilmOptions
+    from mjmr.runner import default_folder, make_film
 
     study = load_study(a.study)
     study.size(a.size)
-    options = FilmOptions(camera=a.camera, look=a.look, size=a.size)
+    options = FilmOptions(camera=a.camera, look=a.look)
     path = a.out or default_folder(study, a.size) / "film.mp4"
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -33,9 +33,7 @@ def marker_colours(number: int) -> list[Rgba]:
     return [_PINK if bits >> k & 1 else _LIME for k in range(4)]
 
 
-def draw_digit(
-    site: "mujoco.MjsSite", body: "mujoco.MjsBody", digit: int, height: float
-) -> None:
+def draw_digit(site: "mujoco.MjsSite", body: "mujoco.MjsBody", digit: int, height: float) -> None:
     """Draw a digit from thin boxes in the plane x = 0 of the site's position, read from behind.
 
     Args:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from mjmr.claims import Bound, Claim, Evidence, Row, Table, judge, judge_all
 from mjmr.conditions import Parameter, complete
 from mjmr.errors import InvalidInputError, UnknownNameError
-from mjmr.reports import verdict_table, verdicts_json, verdicts_markdown
+from mjmr.reports import undecided_line, verdict_table, verdicts_json, verdicts_markdown
 from mjmr.statistics import proportion
 from mjmr.table import NoTrialsError
 
@@ -268,4 +268,7 @@ def test_reports_say_the_same_in_every_form():
     assert len({line.replace("\\|", "").count("|") for line in markdown[2:]}) == 1
     assert "1.5 mm s" in markdown[4]
     assert "(simulation: metric)" in markdown[4]
-    assert verdict_table(verdicts, "t").row_count == 3
+    assert verdict_table(verdicts, "t", "standard").row_count == 3
+    assert undecided_line(verdicts, "standard") == ""
+    assert verdict_table(verdicts, "t", "quick").row_count == 0
+    assert undecided_line(verdicts, "quick").endswith("not at quick: one, two, three")

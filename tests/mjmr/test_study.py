@@ -6,7 +6,7 @@ from mjmr import registry
 from mjmr.conditions import Grid, Parameter
 from mjmr.errors import InvalidInputError, MjmrError, UnknownNameError
 from mjmr.registry import load_study, study_references
-from mjmr.study import FilmOptions, Size, resolve
+from mjmr.study import Size, resolve
 from tests.toy_study import study
 
 
@@ -92,8 +92,6 @@ def test_declarations_that_contradict_themselves_are_refused():
         replace(study, sizes=(*study.sizes, study.sizes[0]))
     with pytest.raises(InvalidInputError):
         Size("quick", (), 1, 1.0)
-    with pytest.raises(UnknownNameError, match="overview"):
-        FilmOptions(camera="side")
 
 
 @pytest.mark.parametrize(

@@ -129,3 +129,15 @@ def run(
         np.array(velocities),
         sampled,
     )
+
+
+def stop_path(p, v, command, cycles=26, inside=24):
+    """Positions (samples, 2) of one robot that gets ``command`` and then brakes, step by step."""
+    parts = []
+    for _ in range(cycles):
+        t = np.linspace(0.0, PERIOD, inside, endpoint=False)[:, None]
+        parts.append(p + v * t + (command - v) * t**2 / (2.0 * PERIOD))
+        p, v = p + 0.5 * (v + command) * PERIOD, command
+        speed = np.hypot(*v)
+        command = v * max(0.0, 1.0 - 6.0 * PERIOD / speed) if speed > 0.0 else v
+    return np.concatenate([*parts, p[None]])

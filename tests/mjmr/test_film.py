@@ -1,0 +1,134 @@
+"""Films and their overlays, looked at with OpenCV and PyAV."""
+
+import av
+import cv2
+import numpy as np
+import pytest
+
+from mjmr.errors import InvalidInputError, UnknownNameError
+from mjmr.film import Film, overview_camera
+from mjmr.film_options import FilmOptions
+from mjmr.kinematics import KinematicSimulation
+from mjmr.overlay import View, draw_ring
+from mjmr.recording import Recording
+from mjmr.render import Renderer
+from mjmr.simulation import Simulation
+from tests.mjmr.worlds import soccer
+
+
+def record(kind=Simulation, seconds=1.0):
+    world, robots = soccer([[-1.0, 0.8, 0.0], [1.0, -0.8, 0.0]])
+    world.add_golf_ball(0.0, 0.0)
+    simulation = kind(world)
+    recording = Recording(simulation, lambda: f"t {simulation.time:.1f}")
+    for _ in simulation.ticks(seconds):
+        robots.drive(np.tile([0.5, 0.0, 0.0], (2, 1)))
+        recording.note(goals=[[1.0, 0.8], [2.0, -0.8]])
+    return recording
+
+
+def test_a_film_plays_in_browsers_and_has_the_right_length(tmp_path):
+    film = Film("title", FilmOptions(width=320, height=240))
+    film.add(record(seconds=2.0))
+    path = film.write(tmp_path / "film.mp4")
+    with av.open(str(path)) as container:
+        stream = container.streams.video[0]
+        assert stream.codec_context.name == "h264"
+        assert stream.codec_context.pix_fmt == "yuv420p"
+        assert (stream.width, stream.height) == (320, 240)
+        assert sum(1 for _ in container.decode(stream)) == 60
+    content = path.read_bytes()
+    assert content.index(b"moov") < content.index(b"mdat"), "the index must come first"
+    assert list(tmp_path.iterdir()) == [path], "no partial file is left"
+
+
+def test_a_film_never_exceeds_a_minute():
+    film = Film("t", FilmOptions(width=320, height=240))
+    recording = record(KinematicSimulation, seconds=90.0)
+    film.add(recording)
+    assert film.speed == pytest.approx(1.5)
+    assert len(film._frame_times()) <= 60 * 30
+
+
+def test_projection_puts_overlays_where_things_are_drawn():
+    """The team ring of a robot, found by colour, is where the camera model projects it."""
+    world, _ = soccer([[-1.0, 0.8, 0.0], [1.3, -1.1, 0.0]])
+    simulation = Simulation(world)
+    camera = overview_camera(world.bounds, 640 / 480, simulation.model)
+    with Renderer(simulation.model, 640, 480) as renderer:
+        picture = renderer.picture(simulation.data, camera)
+        view = View(*renderer.view(), 640, 480)
+    yellow = cv2.inRange(cv2.cvtColor(picture, cv2.COLOR_RGB2HSV), (22, 150, 120), (32, 255, 255))
+    for x, y in ((-1.0, 0.8), (1.3, -1.1)):
+        u, v = view.project(np.array([x, y, 0.15]))
+        patch = yellow[round(v) - 12 : round(v) + 12, round(u) - 12 : round(u) + 12]
+        rows, columns = np.nonzero(patch)
+        assert len(rows) > 5
+        assert abs(columns.mean() - 12) < 1.5
+        assert abs(rows.mean() - 12) < 3.0
+
+
+def test_everything_of_the_world_is_inside_the_overview():
+    world, _ = soccer([[0.0, 0.0, 0.0]])
+    model = world.spec().compile()
+    for width, height in ((640, 676), (1280, 676), (300, 900)):
+        with Renderer(model, width, height) as renderer:
+            simulation = Simulation(world)
+            renderer.picture(simulation.data, overview_camera(world.bounds, width / height, model))
+            view = View(*renderer.view(), width, height)
+        x0, y0, x1, y1 = world.bounds
+        corners = view.ground(np.array([[x0, y0], [x0, y1], [x1, y0], [x1, y1]]))
+        assert (corners > 0).all()
+        assert (corners < [width, height]).all()
+
+
+def test_goals_are_drawn_into_the_picture_and_missing_ones_are_not():
+    film = Film("t", FilmOptions(width=640, height=480))
+    film.add(record())
+    with_goals = film.still(1.0)
+    before = film.still(0.0)
+    assert (with_goals != before).any()
+    blank = np.zeros((50, 50, 3), np.uint8)
+    view = View(np.array([0, 0, 2.0]), np.diag([1.0, -1.0, -1.0]), 50.0, 50, 50)
+    draw_ring(blank, view, np.array([np.nan, 0.0]), 0.1, (255, 255, 255))
+    assert not blank.any()
+    draw_ring(blank, view, np.array([0.0, 0.0]), 0.1, (255, 255, 255))
+    assert blank.any()
+
+
+def test_a_moving_robot_moves_in_the_film():
+    film = Film("t", FilmOptions(width=640, height=480))
+    film.add(record(seconds=2.0))
+    difference = cv2.absdiff(film.still(0.1), film.still(1.9)).max(axis=2)
+    assert (difference > 60).sum() > 100
+
+
+def test_chase_follows_the_robot():
+    film = Film("t", FilmOptions(width=320, height=240, camera="chase", follow=1))
+    film.add(record())
+    assert film.still(0.5).std() > 5.0
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"camera": "chaise"}, "valid: chase"),
+        ({"look": "finer"}, "valid: fine"),
+        ({"width": 321}, "even"),
+        ({"fps": 0}, "at least 1"),
+        ({"speed": 0.0}, "positive"),
+    ],
+)
+def test_bad_film_options_are_refused(options, message):
+    with pytest.raises((InvalidInputError, UnknownNameError), match=message):
+        FilmOptions(**options)
+
+
+def test_notes_are_checked():
+    recording = record(seconds=0.1)
+    with pytest.raises(UnknownNameError, match="goals"):
+        recording.note(goal=[[0, 0], [0, 0]])
+    with pytest.raises(InvalidInputError, match=r"\(2, 2\)"):
+        recording.note(goals=[[0, 0]])
+    with pytest.raises(InvalidInputError, match="at least one"):
+        Film("t").still(0.0)
