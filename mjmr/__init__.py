@@ -3,14 +3,31 @@
 Names are imported when first used, so that ``import mjmr`` loads no MuJoCo.
 """
 
+import ctypes
 import importlib
 import os
 import sys
 from typing import Any
 
-# MuJoCo picks its off-screen GL when it is first imported; without a display only EGL works.
-if sys.platform == "linux" and not os.environ.get("DISPLAY"):
-    os.environ.setdefault("MUJOCO_GL", "egl")
+
+def _choose_gl() -> None:
+    """Tell MuJoCo which off-screen GL to use; it picks one when it is first imported.
+
+    Without a display only EGL works, and where its library is missing ``import mujoco`` itself
+    would fail: then GL is switched off, and everything without cameras still runs.
+    """
+    if sys.platform != "linux":
+        return
+    if not os.environ.get("DISPLAY"):
+        os.environ.setdefault("MUJOCO_GL", "egl")
+    if os.environ.get("MUJOCO_GL", "").lower() == "egl":
+        try:
+            ctypes.CDLL("libEGL.so.1")
+        except OSError:
+            os.environ["MUJOCO_GL"] = "disable"
+
+
+_choose_gl()
 
 _WHERE = {
     "Film": "mjmr.film",

@@ -1,8 +1,10 @@
 """Films: recorded states rendered with overlays, side by side if there are several."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -69,17 +71,20 @@ class Film:
         count = max(1, round(seconds * self.options.fps))
         return [start + k * self.speed / self.options.fps for k in range(count)]
 
-    def _pictures(self, times: Sequence[float]):
+    def _pictures(self, times: Sequence[float]) -> Iterator[NDArray[np.uint8]]:
+        """Whole pictures; the next one is rendered while the caller encodes the last."""
         options, count = self.options, len(self._panels)
-        width, height = options.width // count, options.height - _HEADER
-        panels: list[_Panel] = []
+        width, height = options.width // count // 2 * 2, options.height - _HEADER
+        panels = [_PanelThread(r, label, width, height, options) for r, label in self._panels]
         try:
-            for recording, label in self._panels:
-                panels.append(_Panel(recording, label, width, height, options))
-            for time in times:
+            ahead = [panel.picture(times[0]) for panel in panels]
+            for k, time in enumerate(times):
+                ready = [future.result() for future in ahead]
+                if k + 1 < len(times):
+                    ahead = [panel.picture(times[k + 1]) for panel in panels]
                 canvas = np.full((options.height, options.width, 3), 24, dtype=np.uint8)
-                for k, panel in enumerate(panels):
-                    canvas[_HEADER:, k * width : (k + 1) * width] = panel.picture(time)
+                for i, picture in enumerate(ready):
+                    canvas[_HEADER:, i * width : (i + 1) * width] = picture
                 clock = f"t = {time:6.2f} s   {self.speed:g} x"
                 draw_text(canvas, self.title, (14, 29), 0.6)
                 draw_text(canvas, clock, (options.width - 14, 29), 0.6, align="right")
@@ -87,6 +92,25 @@ class Film:
         finally:
             for panel in panels:
                 panel.close()
+
+
+class _PanelThread:
+    """A panel and the one thread that may use its GL context."""
+
+    def __init__(self, *arguments: Any):
+        self._thread = ThreadPoolExecutor(max_workers=1)
+        self._panel = self._thread.submit(_Panel, *arguments)
+
+    def picture(self, time: float) -> "Future[NDArray[np.uint8]]":
+        return self._thread.submit(lambda: self._panel.result().picture(time))
+
+    def close(self) -> None:
+        def end() -> None:
+            if self._panel.exception() is None:
+                self._panel.result().close()
+
+        self._thread.submit(end)
+        self._thread.shutdown()
 
 
 def overview_camera(
@@ -162,16 +186,16 @@ class _Panel:
         # behind the direction of travel, which holonomic robots choose freely, turning slowly
         back = max(0, index - 10)
         move = self._poses[index, robot, :2] - self._poses[back, robot, :2]
-        aim = math.atan2(move[1], move[0]) if np.hypot(*move) > 0.02 else self._azimuth
-        if self._azimuth is None or aim is None:
-            self._azimuth = yaw if aim is None else aim
-        else:
-            turn = math.remainder(aim - self._azimuth, 2 * math.pi)
-            self._azimuth += 0.06 * turn
+        azimuth = yaw if self._azimuth is None else self._azimuth
+        if np.hypot(*move) > 0.02:
+            aim = math.atan2(move[1], move[0])
+            share = 1.0 if self._azimuth is None else 0.06
+            azimuth += share * math.remainder(aim - azimuth, 2 * math.pi)
+        self._azimuth = azimuth
         camera = mujoco.MjvCamera()
         camera.lookat[:] = (x, y, 0.1)
         camera.distance, camera.elevation = 1.3, -28.0
-        camera.azimuth = math.degrees(self._azimuth)
+        camera.azimuth = math.degrees(azimuth)
         return camera
 
     def close(self) -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numba
+from numba.core import config
 
 from mjmr.provenance import source_digest
 
@@ -36,5 +37,5 @@ def njit(function: Any = None, **options: Any) -> Any:
     """
     if function is None:
         return functools.partial(njit, **options)
-    numba.config.CACHE_DIR = str(cache_folder())  # pyright: ignore[reportAttributeAccessIssue]
+    config.CACHE_DIR = str(cache_folder())  # pyright: ignore[reportAttributeAccessIssue]
     return numba.njit(cache=True, error_model="numpy", **options)(function)

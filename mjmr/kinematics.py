@@ -78,6 +78,9 @@ class KinematicSimulation(TickedSimulation):
         self._pose = integrate_ramp(self._pose, self._twist, end, dt)
         self._twist = end
 
+    def _end_period(self) -> None:
+        """Nothing to check: finite commands move finite poses."""
+
     def _physics_state(self) -> Array:
         return np.stack([self._pose, self._twist])
 

@@ -205,8 +205,9 @@ class TickedSimulation(ABC):
     @abstractmethod
     def _advance(self, steps: int) -> None: ...
 
+    @abstractmethod
     def _end_period(self) -> None:
-        """Check the state; nothing to check by default."""
+        """Check the state that the period ended in."""
 
     @abstractmethod
     def _physics_state(self) -> Array: ...

@@ -2,7 +2,7 @@
 
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import mujoco
 import numpy as np
@@ -71,8 +71,9 @@ class Simulation(TickedSimulation):
             spec.option.timestep = self.timestep
             model = spec.compile()
             data = mujoco.MjData(model)
-        self.model, self.data = model, data
-        self.timestep = model.opt.timestep
+        self.model: Any = model
+        self.data: Any = data
+        self.timestep = self.model.opt.timestep
         self._bound = bound
         self._drives = {id(g): g.platform.bind(model, g.prefixes) for g in world.groups}
         self._each = [(g, self._drives[id(g)]) for g in world.groups]
@@ -80,12 +81,12 @@ class Simulation(TickedSimulation):
         # a firmware loop runs on the coarsest grid of physics steps that serves every platform
         firmware = [d.servo_steps for _, d in self._each if d.servo_steps is not None]
         self._chunk = int(np.gcd.reduce(firmware)) if firmware else 0
-        bodies = [model.body(name).id for name, _ in world.movers]
+        bodies = [self.model.body(name).id for name, _ in world.movers]
         self._mover_ids = np.array(bodies, dtype=np.int64)
         for group, drive in self._each:
             drive.place(data, group.start)
         mujoco.mj_forward(model, data)
-        self._warnings = int(data.warning.number.sum())
+        self._warnings = int(self.data.warning.number.sum())
         self._history: deque[Snapshot] = deque(maxlen=10)
         self._ticks_done = 0
         self._bind()

@@ -72,7 +72,8 @@ class Study:
             and seed give the same bits, except for names that start with ``wall_``: wall-clock
             times, kept in a table of their own. ``MissingGLError`` marks the trial ``no-gl``.
         claims: ``() -> list[Claim]``, or the list.
-        film: ``(study, path, options: mjmr.film_options.FilmOptions) -> None``: writes H.264 to ``path``.
+        film: ``(study, path, options) -> None``: writes H.264 to ``path``; the options are a
+            :class:`mjmr.film_options.FilmOptions`.
         plots: ``(table, folder) -> list of paths``: writes SVG files into ``folder``.
         world: ``(condition) -> object`` with ``to_xml() -> str``, for ``mjmr mjcf``.
         bench: ``() -> str | Mapping``: measures speed, for ``mjmr bench``.

@@ -14,6 +14,8 @@ from mjmr.errors import InvalidInputError
 from mjmr.geometry import rotate, wrap_angle
 from mjmr.jit import njit
 
+_GAUSS = 0.5 * math.sqrt(0.6)  # of the outer points from the middle of a unit interval
+
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class PoseFilterConfig:
@@ -159,7 +161,8 @@ class PoseFilter:
 def advance(state, command, T, new, F, G):
     """State after one period of the ramp from the present twist to the command, with Jacobians.
 
-    The path is integrated by Simpson's rule; its error is below 1e-6 of the way at 10 rad/s.
+    The path is integrated with three Gauss points; its error is below 1e-7 m for twists to 2 m/s
+    and 10 rad/s at 60 Hz.
 
     Args:
         state: Shape (6,).
@@ -180,8 +183,8 @@ def advance(state, command, T, new, F, G):
     F[2, 5] = 0.5 * T
     G[2, 2] = 0.5 * T
     for node in range(3):
-        s = 0.5 * node
-        w = T * (4.0 if node == 1 else 1.0) / 6.0
+        s = 0.5 + (node - 1) * _GAUSS
+        w = T * (8.0 if node == 1 else 5.0) / 18.0
         by_omega = T * (s - 0.5 * s * s)
         by_turn = T * 0.5 * s * s
         yaw = state[2] + by_omega * state[5] + by_turn * command[2]

@@ -244,7 +244,7 @@ def choose_commands(position, velocity, desired, active, dynamics, search, comma
             pick = _valid_candidate(i, position, velocity, desired, command, dynamics, search)
             sampled[i] = pick != 0
             if pick < 0:
-                pick = _least_deep(desired[i, 0], desired[i, 1], search.candidates)
+                pick = _least_deep(i, position, velocity, desired, dynamics, search)
             command[i, 0] = search.candidates[pick, 0]
             command[i, 1] = search.candidates[pick, 1]
             _settle(i, position, velocity, command, dynamics, search, search.chosen, 0)
@@ -331,16 +331,60 @@ def _valid_candidate(i, position, velocity, desired, command, dynamics, search):
 
 
 @njit
-def _least_deep(wx, wy, candidates):
-    """Index of the candidate nearest to (wx, wy) among those of least depth."""
+def _least_deep(i, position, velocity, desired, dynamics, search):
+    """Index of the candidate of least depth; of equal ones, that nearest to the desired command.
+
+    In contact with a robot, standing still ties with every way out and is nearest to a desired
+    command that leads further in. Unless the desired command leads out, or further out than
+    braking, the equal one that ends least deep in the other robots is therefore taken. Ours, not
+    the paper's: without it overlapped robots whose goals cross stay overlapped.
+    """
+    candidates = search.candidates
     least = math.inf
     for k in range(candidates.shape[0]):
         least = min(least, candidates[k, 2])
+    now = _overlap_at(i, search.braking[i], 0, search)
+    stopped = _overlap_at(i, search.braking[i], PIECES - 1, search)
+    rows = search.chosen[position.shape[0]]
     pick = 0
+    pick_end = math.inf
     pick2 = math.inf
     for k in range(candidates.shape[0]):
-        d2 = (candidates[k, 0] - wx) ** 2 + (candidates[k, 1] - wy) ** 2
-        if candidates[k, 2] <= least + EQUAL_DEPTH and d2 < pick2:
+        if candidates[k, 2] > least + EQUAL_DEPTH:
+            continue
+        cx = candidates[k, 0]
+        cy = candidates[k, 1]
+        d2 = (cx - desired[i, 0]) ** 2 + (cy - desired[i, 1]) ** 2
+        end = 0.0
+        if now > 0.0:
+            fill_prediction(
+                position[i, 0],
+                position[i, 1],
+                velocity[i, 0],
+                velocity[i, 1],
+                cx,
+                cy,
+                dynamics.B,
+                dynamics.T,
+                rows,
+            )
+            end = _overlap_at(i, rows, PIECES - 1, search)
+            if k == 0 and (end == 0.0 or end < stopped - EQUAL_DEPTH):
+                return 0
+        if end < pick_end or (end == pick_end and d2 < pick2):
             pick = k
+            pick_end = end
             pick2 = d2
     return pick
+
+
+@njit
+def _overlap_at(i, rows, piece, search):
+    """Depth [m] in the others, summed, at the start of ``piece`` of all predictions."""
+    total = 0.0
+    for j in range(search.chosen.shape[0] - 1):
+        if j != i:
+            dx = rows[piece, 1] - search.chosen[j, piece, 1]
+            dy = rows[piece, 2] - search.chosen[j, piece, 2]
+            total += max(0.0, 2.0 * search.clearance - math.sqrt(dx * dx + dy * dy))
+    return total

@@ -55,7 +55,7 @@ def _search_reduces() -> list[Claim]:
         Claim(
             id="search-spares-obstacles",
             text="satisfies both obstacle and dynamics constraints",
-            how="robots and boxes or walls, scene A, depth x time; mean on - off, largest over sigma",
+            how="robots and boxes or walls, A, depth x time; mean on - off, largest over sigma",
             bound=Bound("<=", 0.0),
             unit="mm s",
             needs={"mode": "metric", "scene": "A", "margin_mm": 0.0, "failure": "none",
@@ -183,7 +183,7 @@ def _larger_margins_help() -> Claim:
         id="larger-margins-help",
         text="as the error increases there is a benefit to higher margins",
         how=(
-            "robot pairs, depth x time, cross4, sum over sigma 3, 4, 5 mm; margin 4 mm / margin 1 mm"
+            "robot pairs, depth x time, cross4, sum over sigma 3 to 5 mm; margin 4 mm / margin 1 mm"
         ),
         bound=Bound("<=", 1 / 3),
         needs={"mode": "metric", "scene": "cross4", "search": True, "failure": "none",

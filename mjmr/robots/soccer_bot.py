@@ -84,7 +84,7 @@ _DOTS = ((0.035, 0.0548), (-0.0548, 0.035), (-0.0548, -0.035), (0.035, -0.0548))
 class PlanarDrive:
     """Slide, slide, hinge: velocity servos whose set point is ramped, with feed-forward."""
 
-    servo_steps = None
+    servo_steps: int | None = None
 
     def __init__(self, model: "mujoco.MjModel", prefixes: Sequence[str]):
         """Look up every index once."""

@@ -51,7 +51,7 @@ def test_a_film_never_exceeds_a_minute():
 
 
 def test_projection_puts_overlays_where_things_are_drawn():
-    """The team ring of a robot, found by colour, is where the camera model projects it."""
+    """The dot on top of a robot, found by colour, is where the camera model projects it."""
     world, _ = soccer([[-1.0, 0.8, 0.0], [1.3, -1.1, 0.0]])
     simulation = Simulation(world)
     camera = overview_camera(world.bounds, 640 / 480, simulation.model)
@@ -60,12 +60,13 @@ def test_projection_puts_overlays_where_things_are_drawn():
         view = View(*renderer.view(), 640, 480)
     yellow = cv2.inRange(cv2.cvtColor(picture, cv2.COLOR_RGB2HSV), (22, 150, 120), (32, 255, 255))
     for x, y in ((-1.0, 0.8), (1.3, -1.1)):
-        u, v = view.project(np.array([x, y, 0.15]))
-        patch = yellow[round(v) - 12 : round(v) + 12, round(u) - 12 : round(u) + 12]
-        rows, columns = np.nonzero(patch)
+        u, v = view.project(np.array([x, y, 0.1538]))
+        # the dot is 50 mm wide, about 5 px here; the ring around the hull starts 8 px away
+        left, top = round(u) - 6, round(v) - 6
+        rows, columns = np.nonzero(yellow[top : top + 13, left : left + 13])
         assert len(rows) > 5
-        assert abs(columns.mean() - 12) < 1.5
-        assert abs(rows.mean() - 12) < 3.0
+        assert abs(columns.mean() + left + 0.5 - u) < 1.0
+        assert abs(rows.mean() + top + 0.5 - v) < 1.0
 
 
 def test_everything_of_the_world_is_inside_the_overview():

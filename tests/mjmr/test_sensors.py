@@ -8,7 +8,7 @@ from tests.mjmr.worlds import BOTH, soccer
 
 
 def follow(kind, sensor, seconds=2.0, read=lambda k: True, fault=None):
-    """One robot speeds up at 3 m/s^2 to 0.5 m/s along x from -2 m; returns (times, reports, sampled_at)."""
+    """One robot speeds up at 3 m/s^2 to 0.5 m/s; returns (times, reports, sampled_at)."""
     world, robots = soccer([[-2.0, 0.0, 0.0]])
     robots.mount(sensor)
     if fault:

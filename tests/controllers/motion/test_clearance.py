@@ -58,13 +58,13 @@ def test_free_agrees_with_brute_force_where_the_start_is_clear(length):
         box_gap, disc_gap = rng.uniform(0.01, 0.2, 2)
         a, b = segments(150, rng, length)
 
-        def spare(x, boxes=boxes, discs=discs, box_gap=box_gap, disc_gap=disc_gap):
-            each = [box_distance(x, box) - box_gap for box in boxes]
-            each += [np.linalg.norm(x - d[:2], axis=-1) - d[2] - disc_gap for d in discs]
-            return each
-
-        least = np.min([least_along(lambda x, k=k: spare(x)[k], a, b) for k in range(6)], axis=0)
-        clear_start = np.min(spare(a), axis=0) > 0
+        spare = [lambda x, o=o, gap=box_gap: box_distance(x, o) - gap for o in boxes]
+        spare += [
+            lambda x, o=o, gap=disc_gap: np.linalg.norm(x - o[:2], axis=-1) - o[2] - gap
+            for o in discs
+        ]
+        least = np.min([least_along(f, a, b) for f in spare], axis=0)
+        clear_start = np.min([f(a) for f in spare], axis=0) > 0
         prepared = prepare_boxes(boxes)
         for i in np.flatnonzero(clear_start & (np.abs(least) > 1e-9)):
             got = segment_free(*a[i], *b[i], -1, WIDE, 0.09, prepared, box_gap, discs, disc_gap)

@@ -26,22 +26,33 @@ def least_static(path):
 
 
 def crowded_states(count, seed):
-    """States of five robots near one box whose braking is clear by at least 1 um."""
+    """States of five robots that drive to and fro close to one box; their braking is clear."""
     rng = np.random.default_rng(seed)
+    navigator = make(seed)
+    p = np.column_stack([np.linspace(-1, 1, N), [-0.8, 0.8, -0.8, 0.8, -0.8]])
+    v, cycle = np.zeros((N, 2)), 0
+    goals = p
     while count:
-        p = rng.uniform(-0.8, 0.9, (N, 2))
-        v = rng.normal(0.0, 0.8, (N, 2))
-        paths = [stop_path(p[i], v[i], brake(v[i])) for i in range(N)]
-        gaps = [least_static(q) for q in paths]
-        gaps += [least_pair(paths[i], paths[j]) for i in range(N) for j in range(i)]
-        if min(gaps) > 1e-6:
+        if cycle % 30 == 0:
+            goals = rng.uniform(-1, 1, (N, 2))
+        if cycle % 4 == 3:
             count -= 1
-            yield p, v, rng.uniform(-2, 2, (N, 2))
+            yield p, v, goals
+        cycle += 1
+        c = navigator.step(p, v, goals)
+        p, v = p + 0.5 * (v + c) * T, c
 
 
 def make(seed=0, n=N, boxes=BOX, **settings):
     config = NavigatorConfig(planner="straight", **settings)
     return Navigator(BOUNDS, boxes, n, config, np.random.default_rng(seed))
+
+
+def test_braking_is_clear_in_the_states_these_tests_start_from():
+    for p, v, _ in crowded_states(60, 21):
+        paths = [stop_path(p[i], v[i], brake(v[i])) for i in range(N)]
+        assert min(least_static(q) for q in paths) >= -1e-11
+        assert min(least_pair(paths[i], paths[j]) for i in range(N) for j in range(i)) >= -1e-11
 
 
 @pytest.mark.parametrize("fail_safe", [False, True])
@@ -64,11 +75,12 @@ def test_chosen_commands_are_clear_reachable_and_never_needlessly_changed(fail_s
                 continue
             changed += 1
             assert np.hypot(*c[i]) <= max(2.0, np.hypot(*v[i])) + 1e-9
-            e = v[i] / np.hypot(*v[i])
+            speed = np.hypot(*v[i])
+            e = v[i] / speed if speed > 0 else np.array([1.0, 0.0])
             along, across = (c[i] - v[i]) @ e, (c[i] - v[i]) @ [-e[1], e[0]]
             assert along <= A * T + 1e-9
             assert abs(across) <= A * T + 1e-9
-            assert abs(v[i] @ e + along) >= np.hypot(*v[i]) - B * T - 1e-9
+            assert along >= -B * T - 1e-9
     assert changed > 30
 
 
@@ -76,15 +88,17 @@ def test_the_desired_command_is_replaced_only_where_it_would_hit():
     """Robot 0 chooses first: its desired command is refused iff it meets the others' braking."""
     refused = 0
     for k, (p, v, goals) in enumerate(crowded_states(80, 22)):
-        navigator = make(k)
-        navigator.step(p, v, goals)
-        mine = stop_path(p[0], v[0], navigator.desired[0])
-        gaps = [least_static(mine)]
-        gaps += [least_pair(mine, stop_path(p[j], v[j], brake(v[j]))) for j in range(1, N)]
-        # Within a quarter of a millimetre the triangle around the ramp may refuse what is clear.
-        if abs(min(gaps)) > 2.5e-4:
-            assert navigator.sampled[0] == (min(gaps) < 0.0)
-            refused += int(navigator.sampled[0])
+        for first in range(N):
+            p, v, goals = (np.roll(a, 1, axis=0) for a in (p, v, goals))
+            navigator = make(k)
+            navigator.step(p, v, goals)
+            mine = stop_path(p[0], v[0], navigator.desired[0])
+            gaps = [least_static(mine)]
+            gaps += [least_pair(mine, stop_path(p[j], v[j], brake(v[j]))) for j in range(1, N)]
+            # Within a quarter of a millimetre the triangle of the ramp may refuse what is clear.
+            if abs(min(gaps)) > 2.5e-4:
+                assert navigator.sampled[0] == (min(gaps) < 0.0), (k, first)
+                refused += int(navigator.sampled[0])
     assert refused > 5
 
 
