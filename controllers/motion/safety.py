@@ -230,7 +230,7 @@ def choose_commands(position, velocity, desired, active, dynamics, search, comma
         sampled: Shape (n,) bool, written: the desired command was not clear.
 
     Source: Bruce and Veloso 2005, section 4. Ours: braking and the desired command are among the
-    candidates when none is clear; ties of depth go to the one nearest to the desired command.
+    candidates when none is clear, and ties of depth are broken as in :func:`_least_deep`.
     """
     for i in range(position.shape[0]):
         cx, cy = braking_command(velocity[i, 0], velocity[i, 1], dynamics.B, dynamics.T)
