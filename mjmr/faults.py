@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from mjmr.errors import InvalidInputError, UnknownNameError
 
-KINDS = ("dead", "reports-lost", "commands-lost")
+KINDS = ("dead", "stopped", "reports-lost", "commands-lost")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -15,7 +15,8 @@ class Fault:
     """One fault of one robot over a span of time.
 
     Attributes:
-        kind: ``"dead"``: brakes at its platform's bound, whatever is commanded, and stays;
+        kind: ``"dead"``: brakes at its platform's bound, whatever is commanded, and stays, and
+            says nothing; ``"stopped"``: the same, announced by its telemetry as it begins;
             ``"commands-lost"``: the radio delivers nothing, and the robot's watchdog brakes it the
             same way until commands come again; ``"reports-lost"``: no localizer reports it.
         robot: Index in the group.
@@ -55,7 +56,12 @@ class FaultSchedule:
 
     def braked(self, time: float) -> NDArray[np.bool_] | None:
         """Robots that brake by themselves at ``time`` [s], shape (n,); None when there are none."""
-        return self._mask(("dead", "commands-lost"), time)
+        return self._mask(("dead", "stopped", "commands-lost"), time)
+
+    def announced(self, time: float) -> NDArray[np.bool_]:
+        """Robots that say at ``time`` [s] that they stop by themselves, shape (n,)."""
+        mask = self._mask(("stopped",), time)
+        return np.zeros(self._n, dtype=bool) if mask is None else mask
 
     def unreported(self, time: float) -> NDArray[np.bool_] | None:
         """Robots no localizer reports at ``time`` [s], shape (n,); None when there are none."""

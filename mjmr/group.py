@@ -145,6 +145,10 @@ class Group:
         view.setflags(write=False)
         return view
 
+    def stopping(self, time: float) -> NDArray[np.bool_]:
+        """Robots whose telemetry says at ``time`` [s] that they stop by themselves, shape (n,)."""
+        return self.faults.announced(time)
+
     def next_ramp(self, time: float, period: float) -> tuple[Array, Array]:
         """Start and end of the ramp of the control period that begins at ``time``; for simulations.
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mjmr.overlap import box_overlap, pair_overlap
+from mjmr.overlap import overlap
 
 if TYPE_CHECKING:
     from mjmr.kinematics import KinematicSimulation
@@ -44,29 +44,17 @@ class OverlapMeter:
         team, truth = simulation.team, simulation.truth
         pose = team.stack([truth.poses(g) for g in team.groups])
         twist = team.stack([truth.twists(g) for g in team.groups])
-        position = np.ascontiguousarray(pose[:, :2])
-        velocity = _world_velocity(pose, twist)
         if self._previous is not None:
-            start, before = self._previous
-            period = simulation.control_period
-            total, depth = pair_overlap(start, before, velocity, self._radii, period, self._samples)
-            if total > 0.0:
-                self.robots += total
+            pairs, depth, fixed = overlap(
+                *self._previous, twist, self._radii, self._boxes, self._bounds,
+                simulation.control_period, self._samples,
+            )  # fmt: skip
+            self.obstacles += fixed
+            if pairs > 0.0:
+                self.robots += pairs
                 self.deepest = max(self.deepest, depth)
                 self.last_overlap = simulation.time
-            self.obstacles += box_overlap(
-                start, before, velocity, self._radii, self._boxes, self._bounds,
-                period, self._samples,
-            )  # fmt: skip
-        self._previous = position, velocity
-
-
-def _world_velocity(pose: Array, twist: Array) -> Array:
-    yaw = pose[:, 2]
-    if not yaw.any():
-        return np.ascontiguousarray(twist[:, :2])
-    c, s = np.cos(yaw), np.sin(yaw)
-    return np.column_stack([c * twist[:, 0] - s * twist[:, 1], s * twist[:, 0] + c * twist[:, 1]])
+        self._previous = pose, twist
 
 
 class ContactMeter:

@@ -2,41 +2,61 @@
 
 import math
 
+import numpy as np
+
 from mjmr.jit import njit
 
 
 @njit
-def pair_overlap(p0, v0, v1, radii, period, samples):
-    """Depth times time of disc pairs over one linear velocity ramp.
+def overlap(pose, start, end, radii, boxes, bounds, period, samples):
+    """Depth times time, of disc pairs and of discs and fixed things, over one ramp of twists.
 
     Args:
-        p0: Positions at its start, (n, 2) [m].
-        v0: Velocities at its start, (n, 2) [m/s].
-        v1: Velocities at its end, (n, 2) [m/s].
+        pose: Poses at the ramp's start, (n, 3) [m, m, rad].
+        start: Twists at its start, (n, 3), body frame.
+        end: Twists at its end, (n, 3), body frame.
         radii: (n,) [m].
+        boxes: (k, 5): x, y, yaw, half length, half width.
+        bounds: (4,): xmin, ymin, xmax, ymax [m].
         period: Of the ramp [s].
-        samples: Instants at which the depth is taken.
+        samples: Instants at which depths are taken.
 
     Returns:
-        (metric [m s], deepest [m]).
+        (pairs [m s], deepest pair [m], fixed things [m s]). Turning inside the ramp is neglected:
+        the velocity's direction is taken at the ramp's ends' mean yaw.
     """
-    n = p0.shape[0]
-    total, deepest = 0.0, 0.0
+    n = pose.shape[0]
+    ramp = np.empty((n, 6))
     for i in range(n):
-        for j in range(i + 1, n):
+        yaw = pose[i, 2] + 0.25 * (start[i, 2] + end[i, 2]) * period
+        c, s = math.cos(yaw), math.sin(yaw)
+        ramp[i, 0], ramp[i, 1] = pose[i, 0], pose[i, 1]
+        ramp[i, 2] = c * start[i, 0] - s * start[i, 1]
+        ramp[i, 3] = s * start[i, 0] + c * start[i, 1]
+        ramp[i, 4] = (c * end[i, 0] - s * end[i, 1] - ramp[i, 2]) / period
+        ramp[i, 5] = (s * end[i, 0] + c * end[i, 1] - ramp[i, 3]) / period
+    pairs, deepest = _pairs(ramp, radii, period, samples)
+    return pairs, deepest, _fixed(ramp, radii, boxes, bounds, period, samples)
+
+
+@njit
+def _pairs(ramp, radii, period, samples):
+    total, deepest = 0.0, 0.0
+    for i in range(ramp.shape[0]):
+        for j in range(i + 1, ramp.shape[0]):
             reach = radii[i] + radii[j]
-            dx, dy = p0[i, 0] - p0[j, 0], p0[i, 1] - p0[j, 1]
-            ux, uy = v0[i, 0] - v0[j, 0], v0[i, 1] - v0[j, 1]
-            wx, wy = v1[i, 0] - v1[j, 0], v1[i, 1] - v1[j, 1]
+            dx, dy = ramp[i, 0] - ramp[j, 0], ramp[i, 1] - ramp[j, 1]
+            ux, uy = ramp[i, 2] - ramp[j, 2], ramp[i, 3] - ramp[j, 3]
+            ax, ay = ramp[i, 4] - ramp[j, 4], ramp[i, 5] - ramp[j, 5]
             # neither can have come nearer than this inside the period
-            far = reach + period * max(math.hypot(ux, uy), math.hypot(wx, wy))
+            last = math.hypot(ux + ax * period, uy + ay * period)
+            far = reach + period * max(math.hypot(ux, uy), last)
             if dx * dx + dy * dy > far * far:
                 continue
             for k in range(samples):
                 t = (k + 0.5) / samples * period
-                half = 0.5 * t * t / period
-                x = dx + ux * t + (wx - ux) * half
-                y = dy + uy * t + (wy - uy) * half
+                x = dx + (ux + 0.5 * ax * t) * t
+                y = dy + (uy + 0.5 * ay * t) * t
                 depth = reach - math.hypot(x, y)
                 if depth > 0.0:
                     total += depth * period / samples
@@ -45,16 +65,14 @@ def pair_overlap(p0, v0, v1, radii, period, samples):
 
 
 @njit
-def box_overlap(p0, v0, v1, radii, boxes, bounds, period, samples):
-    """Depth times time [m s] of discs in boxes (k, 5) and beyond bounds (4,); see pair_overlap."""
+def _fixed(ramp, radii, boxes, bounds, period, samples):
     total = 0.0
-    for i in range(p0.shape[0]):
+    for i in range(ramp.shape[0]):
         r = radii[i]
         for k in range(samples):
             t = (k + 0.5) / samples * period
-            half = 0.5 * t * t / period
-            x = p0[i, 0] + v0[i, 0] * t + (v1[i, 0] - v0[i, 0]) * half
-            y = p0[i, 1] + v0[i, 1] * t + (v1[i, 1] - v0[i, 1]) * half
+            x = ramp[i, 0] + (ramp[i, 2] + 0.5 * ramp[i, 4] * t) * t
+            y = ramp[i, 1] + (ramp[i, 3] + 0.5 * ramp[i, 5] * t) * t
             depth = max(
                 max(bounds[0] + r - x, x + r - bounds[2]),
                 max(bounds[1] + r - y, y + r - bounds[3]),

@@ -23,7 +23,7 @@ class Scene(NamedTuple):
     Attributes:
         bounds: Shape (4,): xmin, ymin, xmax, ymax [m] that the body stays within.
         radius: Radius of the moving disc [m].
-        boxes: Shape (k, 6), from :func:`prepare_boxes`.
+        boxes: Shape (k, 10), from :func:`prepare_boxes`.
         box_clearance: Distance kept between the disc's centre and any box [m].
         discs: Shape (m, 3): x, y, radius [m].
         disc_clearance: Distance kept between the disc's centre and any other disc's rim [m].
@@ -45,14 +45,15 @@ def prepare_boxes(boxes: ArrayLike | None) -> NDArray[np.float64]:
             frame; None or empty for none.
 
     Returns:
-        Shape (k, 6): x, y, cos yaw, sin yaw, half-length, half-width.
+        Shape (k, 10): x, y, cos yaw, sin yaw, half-length, half-width, and the sides xmin, ymin,
+        xmax, ymax of the upright rectangle around the box.
 
     Raises:
         InvalidInputError: Wrong shape, a number that is not finite, or a half-size not above 0.
     """
     b = np.asarray([] if boxes is None else boxes, dtype=np.float64)
     if b.size == 0:
-        return np.zeros((0, 6))
+        return np.zeros((0, 10))
     if b.ndim != 2 or b.shape[1] != 5:
         raise InvalidInputError(
             f"boxes has shape {b.shape}; it must be (k, 5): x, y, yaw, half-length, half-width"
@@ -62,7 +63,10 @@ def prepare_boxes(boxes: ArrayLike | None) -> NDArray[np.float64]:
             raise InvalidInputError(
                 f"box {i} is {row.tolist()}; numbers must be finite and half-sizes above 0"
             )
-    return np.column_stack([b[:, :2], np.cos(b[:, 2]), np.sin(b[:, 2]), b[:, 3:]])
+    c, s = np.cos(b[:, 2]), np.sin(b[:, 2])
+    turn = np.abs(np.array([[c, s], [s, c]]))
+    around = np.einsum("ijk,kj->ki", turn, b[:, 3:])
+    return np.column_stack([b[:, :2], c, s, b[:, 3:], b[:, :2] - around, b[:, :2] + around])
 
 
 def check_bounds(bounds: ArrayLike, radius: float) -> NDArray[np.float64]:
@@ -195,7 +199,13 @@ def segment_free(ax, ay, bx, by, skip, bounds, radius, boxes, box_clearance, dis
         start = math.sqrt((ax - cx) ** 2 + (ay - cy) ** 2)
         if point_segment(cx, cy, ax, ay, bx, by) < min(need, start) - TOLERANCE:
             return False
+    left = min(ax, bx) - box_clearance
+    low = min(ay, by) - box_clearance
+    right = max(ax, bx) + box_clearance
+    high = max(ay, by) + box_clearance
     for k in range(boxes.shape[0]):
+        if left > boxes[k, 8] or right < boxes[k, 6] or low > boxes[k, 9] or high < boxes[k, 7]:
+            continue
         if not _clear_of_box(ax, ay, bx, by, boxes, k, box_clearance):
             return False
     return True

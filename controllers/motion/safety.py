@@ -31,7 +31,7 @@ class Search(NamedTuple):
 
     Attributes:
         bounds: Shape (4,): xmin, ymin, xmax, ymax [m] that the bodies stay within.
-        boxes: Shape (k, 6), prepared.
+        boxes: Shape (k, 10), prepared.
         clearance: Radius of every robot and margin [m].
         fail_safe: Also stay clear of robots that chose before *and brake instead*: one that stops
             obeying in this very cycle is then not hit. Ours, not the paper's.
@@ -124,7 +124,7 @@ def static_depth(rows, reach, required, tolerance, bounds, boxes):
         required: Distance [m] that the centre keeps.
         tolerance: Shortfall [m] that counts as none.
         bounds: Shape (4,), sides of the field.
-        boxes: Shape (k, 6), prepared.
+        boxes: Shape (k, 10), prepared.
 
     The curved ramp lies in the triangle of its control points; the sides of that triangle stand
     for it, which is conservative by at most |c - v| T / 8. The rest is one straight segment.

@@ -41,10 +41,17 @@ study = Study(
         Parameter("margin_mm", "added to the radius in the search", 0.0, unit="mm"),
         Parameter(
             "failure",
-            "dead: one robot brakes after a third of the time and stays; reports-lost: 5 % of all "
-            "reports are lost; commands-lost: one robot hears nothing for a third of the time",
+            "stopped: one robot announces after a third of the time that it stops, brakes and "
+            "stays; dead: the same without a word, so that the others learn it a cycle later; "
+            "reports-lost: 5 % of all reports are lost; commands-lost: one robot hears nothing for "
+            "a third of the time",
             "none",
-            ("none", "dead", "reports-lost", "commands-lost"),
+            ("none", "stopped", "dead", "reports-lost", "commands-lost"),
+        ),
+        Parameter(
+            "fail_safe",
+            "whether the search also stays clear of robots that brake instead of obeying (ours)",
+            False,
         ),
         Parameter("latency", "cycles from a command to its execution", 0, (0, 1, 2, 3)),
         Parameter("predict", "whether the latency is compensated by predicting forward", True),

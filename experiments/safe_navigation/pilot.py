@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controllers.estimation import PoseFilter, PoseFilterConfig
-from controllers.motion import Navigator, forward_predict
+from controllers.motion import Navigator, body_twist, forward_predict, world_velocity
 from experiments.safe_navigation.worlds import Scene
-from mjmr.geometry import rotate
 
 Array = NDArray[np.float64]
 ARRIVED = 0.05  # [m]
@@ -62,7 +61,7 @@ class RawTracker:
         lost = np.isnan(report[:, 0])
         some = lost.any()
         self.yaw = np.where(lost, self.yaw, report[:, 2]) if some else report[:, 2]
-        velocity = rotate(executed[:, :2], self.yaw)
+        velocity = world_velocity(executed, self.yaw)
         position = report[:, :2]
         if some:
             reckoned = self._position + 0.5 * (self._velocity + velocity) * self._period
@@ -138,18 +137,19 @@ class Pilot:
         self._cycle = (scene.starts, np.zeros((n, 2)), np.zeros((n, 2)))
         self.seconds = 0.0
 
-    def step(self, report: Array, executed: Array) -> Array:
+    def step(self, report: Array, executed: Array, stopping: NDArray[np.bool_]) -> Array:
         """Commands (n, 3), body frame.
 
-        A robot whose telemetry is not what it was told, or whose report is missing, is told to
-        brake, and the others expect it to.
+        A robot that says it stops, whose telemetry is not what it was told, or whose report is
+        missing, is told to brake, and the others expect it to.
 
         Args:
             report: Newest report (n, 3), world frame; NaN rows where lost.
             executed: Twists the robots say they execute, (n, 3), body frame.
+            stopping: Robots that say they stop by themselves, (n,).
         """
         heard = np.abs(executed - self._sent.popleft()).max(axis=1) < 1e-9
-        active = heard & ~np.isnan(report[:, 0])
+        active = heard & ~stopping & ~np.isnan(report[:, 0])
         position, velocity = self._tracker.update(report, executed)
         self.shuttle.update(position)
         if self._predict and self._pending:
@@ -163,8 +163,7 @@ class Pilot:
             self._pending.append(planar)
             self._pending.popleft()
         self._cycle = position, velocity, planar
-        command = np.zeros((len(planar), 3))
-        command[:, :2] = rotate(planar, -self._tracker.yaw)
+        command = body_twist(planar, self._tracker.yaw)
         self._sent.append(command)
         return command
 

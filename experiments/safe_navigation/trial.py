@@ -50,6 +50,7 @@ def trial(
         search=condition["search"],
         samples=scene.samples,
         plan_around_robots=scene.sees_robots,
+        fail_safe=condition["fail_safe"],
     )
     navigator = Navigator(world.bounds, world.boxes, robots.n, config, simulation.rng("navigator"))
     pilot = Pilot(scene, navigator, tracker, condition["latency"], condition["predict"])
@@ -58,9 +59,9 @@ def trial(
 
     cycles = round(condition["duration"] / PERIOD)
     spent, sampled = np.zeros(cycles), 0
-    for k, _ in enumerate(simulation.ticks(condition["duration"])):
+    for k, now in enumerate(simulation.ticks(condition["duration"])):
         report = robots.localizer.read()
-        command = pilot.step(report, robots.executed)
+        command = pilot.step(report, robots.executed, robots.stopping(now))
         spent[k] = pilot.seconds
         robots.drive(command)
         sampled += int(navigator.sampled.sum())

@@ -97,8 +97,8 @@ def build(condition: Mapping[str, Any], seed: int) -> tuple[World, Group, Scene]
         )
     )
     start = condition["duration"] / 3
-    if condition["failure"] == "dead":
-        robots.faults.add(Fault(kind="dead", robot=1, start=start))
+    if condition["failure"] in ("dead", "stopped"):
+        robots.faults.add(Fault(kind=condition["failure"], robot=1, start=start))
     elif condition["failure"] == "commands-lost":
         robots.faults.add(Fault(kind="commands-lost", robot=1, start=start, end=2 * start))
     return world, robots, place

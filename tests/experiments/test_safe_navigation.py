@@ -57,7 +57,7 @@ def test_a_controller_that_reads_the_truth_is_stopped(monkeypatch):
     """Truth is shut in this study's own loop, in both modes."""
 
     class Peeking(module.Pilot):
-        def step(self, report, executed):
+        def step(self, report, executed, stopping):
             return peek()
 
     monkeypatch.setattr(module, "Pilot", Peeking)
@@ -133,7 +133,11 @@ def test_committed_verdicts_name_the_claims_there_are():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("failure", ["dead", "reports-lost", "commands-lost"])
-def test_failures_leave_the_others_safe(failure):
+@pytest.mark.parametrize(
+    ("failure", "fail_safe"),
+    [("stopped", False), ("reports-lost", False), ("dead", True), ("commands-lost", True)],
+)
+def test_failures_leave_the_others_safe(failure, fail_safe):
+    values = {"scene": "cross4", "failure": failure, "fail_safe": fail_safe, "duration": 15.0}
     for seed in range(3):
-        assert run(seed, scene="cross4", failure=failure, duration=15.0)["overlap_mm_s"] <= 1e-9
+        assert run(seed, **values)["overlap_mm_s"] <= 1e-9
