@@ -61,17 +61,21 @@ def draw_line(
     pixels = pixels[np.isfinite(pixels).all(axis=-1)]
     if len(pixels) < 2:
         return
-    if dashed:
-        for a, b in zip(pixels[:-1], pixels[1:], strict=True):
-            length = float(np.hypot(*(b - a)))
-            cuts = np.arange(0.0, length, 12.0)
-            for start in cuts:
-                end = min(start + 6.0, length)
-                piece = np.stack([a + (b - a) * start / length, a + (b - a) * end / length])
-                draw_line(picture, piece, colour, thickness)
-        return
-    fixed = np.round(pixels * (1 << _SHIFT)).astype(np.int32)
-    cv2.polylines(picture, [fixed], False, colour, thickness, cv2.LINE_AA, _SHIFT)
+    pieces = _dashes(pixels) if dashed else pixels[None]
+    fixed = np.round(pieces * (1 << _SHIFT)).astype(np.int32)
+    cv2.polylines(picture, list(fixed), False, colour, thickness, cv2.LINE_AA, _SHIFT)
+
+
+def _dashes(pixels: Array, period: float = 12.0) -> Array:
+    """Pieces (m, 2, 2) of a polyline (k, 2): half of every ``period`` pixels of each segment."""
+    pieces = []
+    for a, b in zip(pixels[:-1], pixels[1:], strict=True):
+        length = float(np.hypot(*(b - a)))
+        starts = np.arange(0.0, length, period)
+        ends = np.minimum(starts + period / 2, length)
+        along = np.stack([starts, ends], axis=1) / max(length, 1e-9)
+        pieces.append(a + along[..., None] * (b - a))
+    return np.concatenate(pieces)
 
 
 def draw_ring(

@@ -17,15 +17,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mjmr.claims import Verdict, judge_all, one_line
+from mjmr.claims import Verdict, judge_all
 from mjmr.conditions import parse_filter
 from mjmr.errors import GL_ADVICE, InvalidInputError, MissingGLError, MjmrError
 from mjmr.files import write_atomically
 from mjmr.film_options import FilmOptions
 from mjmr.progress import Progress, doing, say, standard_output
 from mjmr.registry import load_study
-from mjmr.store import Outcome, Store, set_aside
+from mjmr.store import Outcome, Store, is_of, set_aside
 from mjmr.study import Study, Trial
+from mjmr.study_calls import call_study, debugging, make_film
 from mjmr.table import NoTrialsError, Row, Table
 
 if TYPE_CHECKING:
@@ -51,7 +52,8 @@ class RunOptions:
         film: Make the film if it is not there.
         check: Compare verdicts with the committed ones.
         accept: Write verdicts as the committed ones.
-        fresh: Set an existing results folder aside first.
+        fresh: Set aside a results folder that is of another digest or damaged, rather than
+            refuse it.
         retry: Compute failed trials again.
 
     Raises:
@@ -138,11 +140,11 @@ def run_study(
     if options.accept and study.verdicts is None:
         raise MjmrError(f"study {study.name} declares no verdicts file for --accept to write")
     folder = options.out or default_folder(study, options.size)
-    if options.fresh:
+    run = _Run(options, study, trials, folder, messages)
+    if options.fresh and not is_of(folder, run.meta()["digest"]):
         aside = set_aside(folder)
         if aside:
             say(messages, f"set aside as {aside}")
-    run = _Run(options, study, trials, folder, messages)
     try:
         with Store(folder, run.meta()) as store:
             complete = run.compute(store, executor)
@@ -335,55 +337,9 @@ class _Run:
         return shlex.join(words)
 
 
-def make_film(study: Study, path: Path, options: FilmOptions) -> None:
-    """Make a study's film at ``path``: whole, or not at all.
-
-    Raises:
-        MissingGLError: No off-screen OpenGL.
-        MjmrError: The study has no film, or making it failed.
-    """
-    function = study.resolve("film")
-    if function is None:
-        raise MjmrError(f"study {study.name} has no film")
-    try:
-        folder = Path(tempfile.mkdtemp(prefix=".film-", dir=path.parent))
-    except OSError as e:
-        raise MjmrError(f"cannot write to {path.parent}: {e.strerror}") from e
-    try:
-        call_study("film", function, study, folder / path.name, options)
-        if not (folder / path.name).is_file():
-            raise MjmrError(f"film of {study.name}: nothing was written")
-        os.replace(folder / path.name, path)
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
-
-
 def cpu_count() -> int:
     """CPUs this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def debugging() -> bool:
-    """Whether tracebacks are wanted: ``MJMR_DEBUG=1``."""
-    return os.environ.get("MJMR_DEBUG", "") not in ("", "0")
-
-
-def call_study(role: str, function: Callable[..., Any], *arguments: Any) -> Any:
-    """Call a study's function; what it raises becomes one sentence that names its role.
-
-    Raises:
-        MissingGLError: As the function raised it.
-        NoTrialsError: As the function raised it.
-        MjmrError: For anything else the function raised, unless ``MJMR_DEBUG=1``.
-    """
-    try:
-        return function(*arguments)
-    except (MissingGLError, NoTrialsError):
-        raise
-    except Exception as e:
-        if debugging():
-            raise
-        raise MjmrError(f"{role} failed: {one_line(e)} (MJMR_DEBUG=1 shows where)") from e
 
 
 def _row(trial: Trial, outcome: Outcome | None) -> Row:

@@ -142,6 +142,8 @@ def ratio_of_means(
     x, y = _checked_pair(numerator, denominator, paired)
     if y.mean() == 0.0:
         raise InvalidInputError("a ratio of means needs a denominator whose mean is not 0")
+    if not x.any():  # 0 whatever the denominator: resamples of it that are all 0 say nothing
+        return Estimate(0.0, 0.0, 0.0, min(x.size, y.size))
     return _bootstrap((x, y), _ratio, paired, rng, confidence, resamples)
 
 

@@ -294,6 +294,15 @@ def _outcomes(db: sqlite3.Connection) -> Iterator[Outcome]:
         )
 
 
+def is_of(folder: Path, digest: str) -> bool:
+    """Whether ``folder`` can take results of ``digest``: it holds such, or none at all."""
+    try:
+        meta = read_meta(folder)
+    except StoreError:
+        return False
+    return meta is None or meta.get("digest") == digest
+
+
 def set_aside(folder: Path) -> Path | None:
     """Rename a results folder to ``NAME.old-YYYYmmdd-HHMMSS``; nothing is deleted.
 

@@ -78,3 +78,20 @@ def test_every_page_a_document_links_to_is_there():
         for target in re.findall(r"(?<!!)\[[^]]*\]\(([^)#]+)\)", page.read_text()):
             if not target.startswith("http"):
                 assert (page.parent / target).exists(), f"{page.name} links to {target}"
+
+
+def test_the_readme_counts_the_committed_verdicts():
+    """The table of systems says for each study how its claims stand at size standard."""
+    from mjmr.registry import load_study, study_references
+
+    readme = (ROOT / "README.md").read_text()
+    for name in study_references():
+        study = load_study(name)
+        verdicts = study.committed_verdicts()["standard"]
+        counts = [
+            f"{sum(v == verdict for v in verdicts.values())} {verdict}"
+            for verdict in ("holds", "fails", "inconclusive", "not testable")
+            if verdict in verdicts.values()
+        ]
+        (row,) = [line for line in readme.splitlines() if line.startswith(f"| `{name}`")]
+        assert ", ".join(counts) in row

@@ -120,7 +120,7 @@ def film(study, path, options):
         raise MissingGLError("no off-screen OpenGL")
     if os.environ.get("TOY_FILM") == "raise":
         raise RuntimeError("film tore")
-    Path(path).write_bytes(f"{study.name} {options.camera} {options.look} {options.size}".encode())
+    Path(path).write_bytes(f"{study.name} {options.camera} {options.look}".encode())
 
 
 class _World:

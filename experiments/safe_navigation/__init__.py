@@ -53,6 +53,13 @@ study = Study(
             "whether the search also stays clear of robots that brake instead of obeying (ours)",
             False,
         ),
+        Parameter(
+            "motion",
+            "paper: along and across the way to the target; bisection: both axes arrive together "
+            "(an ablation, not in the paper)",
+            "paper",
+            ("paper", "bisection"),
+        ),
         Parameter("latency", "cycles from a command to its execution", 0, (0, 1, 2, 3)),
         Parameter("predict", "whether the latency is compensated by predicting forward", True),
         Parameter("duration", "of a run, simulated", 30.0, unit="s"),

@@ -11,7 +11,7 @@ from mjmr.loop import TickedSimulation
 from mjmr.recording import Recording
 from mjmr.study import Study
 
-_SECONDS = 15.0
+_SECONDS = 12.0
 _SEED = 0
 
 

@@ -16,10 +16,11 @@ def plots(table: Table, folder: Path) -> list[Path]:
     """Write every plot the table has trials for; returns the files."""
     base = table.where(mode="metric", failure="none", latency=0)
     written = []
-    for scene in base.where(margin_mm=0.0).distinct("scene"):
-        rows = base.where(scene=scene, margin_mm=0.0)
+    for scene in base.where(margin_mm=0.0, motion="paper").distinct("scene"):
+        rows = base.where(scene=scene, margin_mm=0.0, motion="paper")
         if len(rows.distinct("search")) == 2 and len(rows.distinct("sigma_mm")) > 1:
             written.append(_figure_8(rows, str(scene), folder))
+    base = base.where(motion="paper")
     margins = base.where(scene="cross4", search=True)
     if len(margins.distinct("margin_mm")) > 1:
         written.append(_figure_9(margins, folder))
@@ -51,9 +52,11 @@ def _figure_8(rows: Table, scene: str, folder: Path) -> Path:
 def _figure_9(rows: Table, folder: Path) -> Path:
     title = f"Figure 9: margins, search on, scene cross4 (metric mode, {rows.finished} runs)"
     with figure(folder / "figure9-cross4.svg", title, _ERROR, _METRIC) as axes:
-        for margin in sorted(rows.distinct("margin_mm")):
+        for margin in sorted(float(m) for m in rows.distinct("margin_mm")):
             points = _means(rows.where(margin_mm=margin), "overlap_mm_s")
-            interval_line(axes, *points, f"margin {margin:g} mm")
+            dodge = 0.03 * (margin - 2.0)  # so that bars do not hide each other
+            x = [sigma + dodge for sigma in points[0]]
+            interval_line(axes, x, points[1], f"margin {margin:g} mm")
         axes.set_ylim(bottom=0)
         axes.legend()
     return folder / "figure9-cross4.svg"

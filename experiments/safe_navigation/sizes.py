@@ -36,6 +36,8 @@ def _whole(seeds: int, zero_seeds: int, physical_seeds: int) -> tuple[Grid, ...]
     return (
         Grid(scene=("A", *_CROSSES), search=(True, False), sigma_mm=_SIGMAS, seeds=seeds),
         Grid(scene="cross4", sigma_mm=_SIGMAS, margin_mm=_MARGINS, seeds=seeds),
+        Grid(scene="cross10", sigma_mm=_SIGMAS, margin_mm=4.0, seeds=seeds),
+        Grid(scene="A", motion="bisection", seeds=seeds),
         Grid(
             scene=("A", *_CROSSES),
             failure=("stopped", "dead", "reports-lost", "commands-lost"),
@@ -55,11 +57,11 @@ def _whole(seeds: int, zero_seeds: int, physical_seeds: int) -> tuple[Grid, ...]
     )
 
 
-STANDARD = Size("standard", grids=_whole(24, 16, 20), default_seeds=24, expected_minutes=12.0)
+STANDARD = Size("standard", grids=_whole(24, 16, 20), default_seeds=24, expected_minutes=11.0)
 FULL = Size(
     "full",
     grids=_whole(40, 40, 40),
     default_seeds=40,
-    expected_minutes=25.0,
+    expected_minutes=22.0,
     note="the paper's own count: 40 runs of 30 s for each data point",
 )

@@ -51,6 +51,7 @@ def trial(
         samples=scene.samples,
         plan_around_robots=scene.sees_robots,
         fail_safe=condition["fail_safe"],
+        motion=condition["motion"],
     )
     navigator = Navigator(world.bounds, world.boxes, robots.n, config, simulation.rng("navigator"))
     pilot = Pilot(scene, navigator, tracker, condition["latency"], condition["predict"])

@@ -37,8 +37,8 @@ def main(arguments: Sequence[str]) -> int:
     """Print benchmarks."""
     a = parse(Bench, "bench", arguments, _MORE)
     from mjmr.registry import load_study
-    from mjmr.runner import call_study
     from mjmr.study import resolve
+    from mjmr.study_calls import call_study
 
     benches: list[tuple[str, Any]] = []
     if importlib.util.find_spec("mjmr.bench") is not None:

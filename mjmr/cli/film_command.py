@@ -42,7 +42,8 @@ def main(arguments: Sequence[str]) -> int:
     a = parse(Film, "film", arguments, _MORE)
     from mjmr.film_options import FilmOptions
     from mjmr.registry import load_study
-    from mjmr.runner import default_folder, make_film
+    from mjmr.runner import default_folder
+    from mjmr.study_calls import make_film
 
     study = load_study(a.study)
     study.size(a.size)

@@ -42,7 +42,7 @@ def main(arguments: Sequence[str]) -> int:
     from mjmr.conditions import parse_condition
     from mjmr.files import write_atomically
     from mjmr.registry import load_study
-    from mjmr.runner import call_study
+    from mjmr.study_calls import call_study
 
     study = load_study(a.study)
     condition = parse_condition(study.parameters, a.condition)

@@ -24,7 +24,7 @@ FILES, in renders/STUDY/SIZE or --out
 RESUMING
   Every finished trial is on disk at once. After Ctrl-C or a crash the same command goes on where
   the run stopped. A folder belongs to one configuration and source; with another one it is refused
-  and left as it is, and --fresh sets it aside as NAME.old-YYYYmmdd-HHMMSS.
+  and left as it is, or with --fresh renamed to NAME.old-YYYYmmdd-HHMMSS.
 
 EXIT CODES
   0    all trials finished
@@ -63,7 +63,9 @@ class Run:
     accept: Annotated[
         bool, option("", "For maintainers: write verdicts as the committed ones.", "no")
     ] = False
-    fresh: Annotated[bool, option("", "Set existing results aside first.", "no")] = False
+    fresh: Annotated[
+        bool, option("", "Set results of other code aside instead of refusing.", "no")
+    ] = False
     retry: Annotated[bool, option("", "Compute failed trials again.", "no")] = False
 
 

@@ -141,3 +141,29 @@ def test_failures_leave_the_others_safe(failure, fail_safe):
     values = {"scene": "cross4", "failure": failure, "fail_safe": fail_safe, "duration": 15.0}
     for seed in range(3):
         assert run(seed, **values)["overlap_mm_s"] <= 1e-9
+
+
+@pytest.mark.slow
+def test_one_worker_and_two_give_identical_metrics():
+    from mjmr.executor import LocalExecutor
+
+    short = {"duration": 2.0, "sigma_mm": 3.0}
+    conditions = [
+        study.condition(scene="A", **short),
+        study.condition(scene="cross4", failure="reports-lost", **short),
+        study.condition(mode="physical", scene="cross4", **short),
+    ]
+    trials = [(condition, seed) for condition in conditions for seed in range(2)]
+
+    def table(workers):
+        outcomes = LocalExecutor(workers).run(study.name, trials)
+        return {(str(o.condition), o.seed): json.dumps(o.metrics) for o in outcomes}
+
+    one, two = table(1), table(2)
+    assert len(one) == len(trials)
+    assert one == two
+    here = {
+        (str(c), s): {k: v for k, v in trial(c, s).items() if not k.startswith("wall_")}
+        for c, s in trials
+    }
+    assert {k: json.loads(v) for k, v in one.items()} == here

@@ -139,7 +139,7 @@ def test_mjcf_film_bench_version(capsys, tmp_path, monkeypatch):
         )
         == 0
     )
-    assert (tmp_path / "a.mp4").read_bytes() == b"toy chase fine full"
+    assert (tmp_path / "a.mp4").read_bytes() == b"toy chase fine"
     assert main(["film", "toy"]) == 0
     assert (tmp_path / "renders/toy/quick/film.mp4").exists()
     monkeypatch.setenv("TOY_FILM", "gl")

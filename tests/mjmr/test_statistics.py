@@ -104,3 +104,9 @@ def test_one_constant_side_still_gives_an_interval():
 def test_what_has_no_answer_is_refused(call):
     with pytest.raises(InvalidInputError):
         call()
+
+
+def test_a_ratio_of_nothing_to_something_is_exactly_zero():
+    """Even where most denominators are 0, so that some resamples of them are all 0."""
+    found = statistics.paired_ratio(np.zeros(24), np.array([0.0] * 22 + [3.0, 5.0]))
+    assert (found.value, found.interval, found.n) == (0.0, (0.0, 0.0), 24)
