@@ -96,14 +96,14 @@ def test_stopping_gives_up_what_is_under_way(monkeypatch):
     begin = time.monotonic()
     assert run(TOY, 2, stop=lambda: time.monotonic() > begin + 1.0) == []
     assert time.monotonic() - begin < 8.0
-    assert not [c for c in psutil.Process().children(True) if "spawn_main" in " ".join(c.cmdline())]
+    assert not spawned(psutil.Process())
 
 
 def test_closing_the_iteration_ends_the_workers():
     outcomes = LocalExecutor(2).run(TOY, load_study(TOY).trials("quick"))
     assert next(outcomes).status == "ok"
     outcomes.close()
-    assert not [c for c in psutil.Process().children(True) if "spawn_main" in " ".join(c.cmdline())]
+    assert not spawned(psutil.Process())
 
 
 _DRIVER = """

@@ -330,7 +330,7 @@ def test_ctrl_c_while_workers_start_is_no_crash_of_theirs(tmp_path):
         start_new_session=True,
     )
     process = psutil.Process(driver.pid)
-    wait_for(lambda: any("spawn_main" in " ".join(c.cmdline()) for c in process.children()))
+    wait_for(lambda: spawned(process))
     time.sleep(0.1)  # its interpreter is up and imports
     os.killpg(driver.pid, signal.SIGINT)
     _, messages = driver.communicate(timeout=15)
