@@ -12,6 +12,7 @@ from mjmr.errors import InvalidInputError
 from mjmr.executor import LocalExecutor, compute
 from mjmr.registry import load_study
 from mjmr.store import encode
+from tests.processes import spawned
 
 TOY = "tests.toy_study:study"
 

@@ -18,6 +18,7 @@ from mjmr.errors import GL_ADVICE, InvalidInputError, MjmrError
 from mjmr.progress import Progress
 from mjmr.runner import RunOptions, run_study
 from mjmr.store import StoreError
+from tests.processes import spawned
 
 TOY = "tests.toy_study:study"
 
