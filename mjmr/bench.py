@@ -45,9 +45,9 @@ def spread(values: np.ndarray, digits: int = 3) -> str:
 def core() -> str:
     """Idle loop (guard on, no sensor due) against bare mj_step, for 4 and 100 robots."""
     lines = [conditions(), "idle loop / bare mj_step, paired rounds, median [lowest, highest]:"]
-    for n, seconds in ((4, 4.0), (100, 1.0)):
+    for n, seconds in ((4, 2.0), (100, 0.5)):
         loop, bare = _idle(n, seconds)
-        figures = interleave({"loop": loop, "bare": bare}, rounds=7)
+        figures = interleave({"loop": loop, "bare": bare}, rounds=31)
         ratio = figures["loop"] / figures["bare"]
         factor = seconds / figures["loop"]
         lines.append(f"  {n:3d} soccer robots: {spread(ratio)}; loop {spread(factor)} x real time")

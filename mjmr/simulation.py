@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mjmr.errors import InvalidInputError, SimulationDivergedError
+from mjmr.guard import plausible
 from mjmr.loop import Snapshot, TickedSimulation
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ class Simulation(TickedSimulation):
         self.model: Any = model
         self.data: Any = data
         self.timestep = self.model.opt.timestep
-        self._bound = bound
+        self._bound = float(bound)
         self._drives = {id(g): g.platform.bind(model, g.prefixes) for g in world.groups}
         self._each = [(g, self._drives[id(g)]) for g in world.groups]
         self._step_watchers: list[Callable[[], None]] = []
@@ -86,7 +87,9 @@ class Simulation(TickedSimulation):
         for group, drive in self._each:
             drive.place(data, group.start)
         mujoco.mj_forward(model, data)
-        self._warnings = int(self.data.warning.number.sum())
+        # live views: looking the arrays up again would cost more than the check
+        self._qpos, self._warning_counts = self.data.qpos, self.data.warning.number
+        self._warnings = int(self._warning_counts.sum())
         self._history: deque[Snapshot] = deque(maxlen=10)
         self._ticks_done = 0
         self._bind()
@@ -129,11 +132,7 @@ class Simulation(TickedSimulation):
                 watch()
 
     def _end_period(self) -> None:
-        data = self.data
-        # one pass finds NaN, infinity and runaway alike: NaN compares false
-        plausible = np.abs(data.qpos).max() <= self._bound
-        warned = data.warning.number.sum() != self._warnings
-        if not plausible or warned:
+        if not plausible(self._qpos, self._bound, self._warning_counts, self._warnings):
             raise self._diverged()
         self._ticks_done += 1
         if self._ticks_done % 6 == 0:
