@@ -236,7 +236,7 @@ def matches(condition: Mapping[str, Value], wanted: Filter) -> bool:
 class Grid:
     """A product of lists of values over the parameters' defaults, with its own seed count.
 
-    ``Grid(scene=["A", "cross4"], sigma=[0.0, 4.0], search=True)`` is four conditions.
+    ``Grid(scene=["A", "cross4"], sigma_mm=[0.0, 4.0], search=True)`` is four conditions.
     """
 
     def __init__(self, seeds: int | None = None, **values: Value | Sequence[Value]):

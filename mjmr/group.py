@@ -77,6 +77,8 @@ class Group:
         self.faults = FaultSchedule(self.n)
         # no component above this: neither the speed nor the yaw rate can be over its limit
         self._always_allowed = min(platform.max_twist[0] / 2**0.5, platform.max_twist[1])
+        self._everyone = np.ones(self.n, dtype=bool)
+        self._everyone.setflags(write=False)
         self.sensors: dict[str, Sensor] = {}
         for key, sensor in platform.default_sensors().items():
             self.mount(sensor, key)
@@ -88,6 +90,7 @@ class Group:
         self._command = np.zeros((self.n, 3))
         self._executed = np.zeros((self.n, 3))
         self._pending = deque([self._command] * self.command_latency)
+        self._acknowledged = self._everyone
 
     def mount(self, sensor: "Sensor", name: str | None = None) -> Any:
         """Mount a sensor on every robot and make it ``group.<name>``.
@@ -102,6 +105,9 @@ class Group:
             The sensor.
         """
         key = name or sensor.name
+        if sensor.carrier not in (None, self):
+            raise InvalidInputError(f"this {sensor.name} is mounted on another group already")
+        sensor.carrier = self
         if key in self.sensors and self.sensors[key].name != sensor.name:
             raise InvalidInputError(f"group {self.name!r} has another sensor named {key!r}")
         self.sensors[key] = sensor
@@ -140,10 +146,19 @@ class Group:
 
     @property
     def executed(self) -> Array:
-        """Twist the drives have ramped to, (n, 3), body frame: each robot's own telemetry."""
+        """Twist the drives' set points have reached, (n, 3), body frame: telemetry.
+
+        It is what a robot's firmware tries to do, not what the robot does: one pressed against a
+        wall still reports its set point.
+        """
         view = self._executed.view()
         view.setflags(write=False)
         return view
+
+    @property
+    def acknowledged(self) -> NDArray[np.bool_]:
+        """Robots that acknowledge the command of the period just over, (n,): telemetry."""
+        return self._acknowledged
 
     def stopping(self, time: float) -> NDArray[np.bool_]:
         """Robots whose telemetry says at ``time`` [s] that they stop by themselves, shape (n,)."""
@@ -160,6 +175,7 @@ class Group:
             self._pending.append(target)
             target = self._pending.popleft()
         braked = self.faults.braked(time)
+        self._acknowledged = self._everyone if braked is None else ~braked
         if braked is not None:
             stop = self.platform.brake(self._executed, period)
             target = np.where(braked[:, None], stop, target)
@@ -168,11 +184,12 @@ class Group:
 
     def state(self) -> tuple[Any, ...]:
         """What :meth:`next_ramp` depends on, for snapshots."""
-        return self._command, self._executed, tuple(self._pending), self.clamped.copy()
+        pending, clamped = tuple(self._pending), self.clamped.copy()
+        return self._command, self._executed, pending, clamped, self._acknowledged
 
     def set_state(self, state: tuple[Any, ...]) -> None:
         """Put back what :meth:`state` returned."""
-        self._command, self._executed, pending, clamped = state
+        self._command, self._executed, pending, clamped, self._acknowledged = state
         self._pending, self.clamped = deque(pending), clamped.copy()
 
     def add_to(self, spec: "mujoco.MjSpec") -> None:

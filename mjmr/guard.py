@@ -8,18 +8,18 @@ from mjmr.jit import njit
 
 
 @njit
-def plausible(positions, bound, warning_counts, expected):
-    """True if every position is finite and within ``bound``, and no warning has been added.
+def plausible(positions, bounds, warning_counts, expected):
+    """True if every position is within its bound, and no warning has been added.
 
     Args:
         positions: Shape (nq,).
-        bound: Largest magnitude.
+        bounds: Shape (nq,), largest magnitudes, finite.
         warning_counts: Shape (k,), MuJoCo's counters.
         expected: Their sum so far.
     """
     for k in range(positions.shape[0]):
         # NaN compares false, so this finds NaN, infinity and runaway alike
-        if not -bound <= positions[k] <= bound:
+        if not -bounds[k] <= positions[k] <= bounds[k]:
             return False
     total = 0
     for k in range(warning_counts.shape[0]):

@@ -102,9 +102,11 @@ class TickedSimulation(ABC):
         self.truth = Truth(self)
         self.acting = False
         self._observers: list[Callable[[], None]] = []
+        self._started = False
 
     def _bind(self) -> None:
         """Take the groups and their sensors; called at the end of a subclass's __init__."""
+        self.world.simulation = self
         for group in self.world.groups:
             group.reset()
             for name, sensor in group.sensors.items():
@@ -136,10 +138,19 @@ class TickedSimulation(ABC):
 
         Raises:
             SimulationDivergedError: The physics left the plausible range.
+            InvalidInputError: A duration that is negative or not finite, or another simulation has
+                taken this world's robots since.
         """
+        if not (math.isfinite(duration) and duration >= 0):
+            raise InvalidInputError(f"a duration is finite and 0 or more; got {duration} s")
+        if self.world.simulation is not self:
+            raise InvalidInputError(
+                "another simulation has taken this world's robots; build a world for each"
+            )
         count = round(duration / self.control_period)
         observers = self._observers
-        if self.step == 0:
+        if not self._started:
+            self._started = True
             self._sample_due()
             for observe in observers:
                 observe()

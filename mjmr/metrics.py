@@ -18,8 +18,9 @@ class OverlapMeter:
     """Interpenetration depth times the time spent in it, in a kinematic simulation.
 
     The metric of Bruce and Veloso 2005, section 5, summed over robot pairs and, apart, over
-    robots and boxes or walls. Each control period is a known ramp, so the depth is evaluated at
-    ``samples`` instants inside it (midpoint rule), not only at ticks.
+    robots and boxes or walls. Each control period is a known ramp: whether two robots overlap in
+    it, and how deep, is exact; the integral over time is taken at ``samples`` instants (midpoint
+    rule), as are depths in fixed things.
 
     Attributes:
         robots: Over robot pairs [m s].

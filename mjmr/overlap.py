@@ -53,15 +53,46 @@ def _pairs(ramp, radii, period, samples):
             far = reach + period * max(math.hypot(ux, uy), last)
             if dx * dx + dy * dy > far * far:
                 continue
+            depth = reach - _nearest(dx, dy, ux, uy, ax, ay, period)
+            if depth <= 0.0:
+                continue
+            deepest = max(deepest, depth)
+            inside = 0.0
             for k in range(samples):
                 t = (k + 0.5) / samples * period
                 x = dx + (ux + 0.5 * ax * t) * t
                 y = dy + (uy + 0.5 * ay * t) * t
-                depth = reach - math.hypot(x, y)
-                if depth > 0.0:
-                    total += depth * period / samples
-                    deepest = max(deepest, depth)
+                inside += max(0.0, reach - math.hypot(x, y)) * period / samples
+            # a touch that falls between samples still counts: nothing but 0 is 0
+            total += inside if inside > 0.0 else depth * period / samples
     return total, deepest
+
+
+@njit
+def _nearest(dx, dy, ux, uy, ax, ay, period):
+    """Least distance [m] inside a ramp: the best of a few instants, narrowed down by thirds."""
+    parts = 8
+    best, at = math.inf, 0
+    for k in range(parts + 1):
+        d2 = _squared(dx, dy, ux, uy, ax, ay, k * period / parts)
+        if d2 < best:
+            best, at = d2, k
+    low, high = max(0, at - 1) * period / parts, min(parts, at + 1) * period / parts
+    for _ in range(60):
+        third = (high - low) / 3.0
+        a, b = low + third, high - third
+        if _squared(dx, dy, ux, uy, ax, ay, a) < _squared(dx, dy, ux, uy, ax, ay, b):
+            high = b
+        else:
+            low = a
+    return math.sqrt(min(best, _squared(dx, dy, ux, uy, ax, ay, 0.5 * (low + high))))
+
+
+@njit
+def _squared(dx, dy, ux, uy, ax, ay, t):
+    x = dx + (ux + 0.5 * ax * t) * t
+    y = dy + (uy + 0.5 * ay * t) * t
+    return x * x + y * y
 
 
 @njit

@@ -4,12 +4,20 @@ import hashlib
 
 import numpy as np
 
+from mjmr.errors import InvalidInputError
+
 
 class Streams:
     """Independent random streams that depend on (seed, name) alone, not on who asks first."""
 
     def __init__(self, seed: int):
-        """Args: seed: The trial's seed, a non-negative integer."""
+        """Args: seed: The trial's seed.
+
+        Raises:
+            InvalidInputError: It is negative or no whole number.
+        """
+        if seed != int(seed) or seed < 0:
+            raise InvalidInputError(f"a seed is a whole number, 0 or more; got {seed}")
         self.seed = seed
 
     def sequence(self, name: str) -> np.random.SeedSequence:

@@ -242,7 +242,7 @@ class _Run:
         prepare = self.study.resolve("prepare")
         if prepare is None:
             return
-        with doing(self.messages, "compiling (first run only) ..."):
+        with doing(self.messages, "preparing (compiles on the first run) ..."):
             call_study("prepare", prepare)
 
     def table(self, store: Store, trials: list[Trial]) -> Table:
@@ -332,7 +332,7 @@ class _Run:
         words += ["--workers", str(o.workers)] if o.workers is not None else []
         words += ["--only", *o.only] if o.only else []
         words += ["--out", str(o.out)] if o.out is not None else []
-        words += [f"--{n}" for n in ("check", "accept") if getattr(o, n)]
+        words += [f"--{n}" for n in ("check", "accept", "retry") if getattr(o, n)]
         words += [] if o.film else ["--no-film"]
         return shlex.join(words)
 

@@ -47,9 +47,9 @@ class Simulation(TickedSimulation):
             control_period: Between two ticks [s].
             dt_max: Largest timestep [s]; the one used divides control_period.
             model: An existing model of this world to adopt, shared with its owner; its timestep
-                must divide control_period.
+                must divide control_period. The robots are put at their starts all the same.
             data: The existing state that goes with ``model``.
-            bound: Anything further than this from the origin [m] counts as diverged.
+            bound: Any coordinate further than this from the origin [m] counts as diverged.
 
         Raises:
             InvalidInputError: A model without data, or with a timestep that does not divide.
@@ -75,13 +75,11 @@ class Simulation(TickedSimulation):
         self.model: Any = model
         self.data: Any = data
         self.timestep = self.model.opt.timestep
-        self._bound = float(bound)
+        self._bound = bound
+        self._bounds = _bounds(self.model, bound)
         self._drives = {id(g): g.platform.bind(model, g.prefixes) for g in world.groups}
         self._each = [(g, self._drives[id(g)]) for g in world.groups]
         self._step_watchers: list[Callable[[], None]] = []
-        # a firmware loop runs on the coarsest grid of physics steps that serves every platform
-        firmware = [d.servo_steps for _, d in self._each if d.servo_steps is not None]
-        self._chunk = int(np.gcd.reduce(firmware)) if firmware else 0
         bodies = [self.model.body(name).id for name, _ in world.movers]
         self._mover_ids = np.array(bodies, dtype=np.int64)
         for group, drive in self._each:
@@ -111,6 +109,12 @@ class Simulation(TickedSimulation):
         """Call ``watcher`` after every physics step; for meters of contact, which are brief."""
         self._step_watchers.append(watcher)
 
+    def restore(self, snapshot: Snapshot) -> None:
+        """Go back (or forward) to ``snapshot``; also out of a divergence."""
+        super().restore(snapshot)
+        self._warnings = int(self._warning_counts.sum())
+        self._history.clear()
+
     def _begin_period(self) -> None:
         time, period, data = self.time, self.control_period, self.data
         for group, drive in self._each:
@@ -119,20 +123,16 @@ class Simulation(TickedSimulation):
 
     def _advance(self, steps: int) -> None:
         model, data = self.model, self.data
-        if not self._step_watchers and not self._chunk:
+        if not self._step_watchers:
             mujoco.mj_step(model, data, steps)
             return
-        for k in range(steps):
-            if self._chunk:
-                for _, drive in self._each:
-                    if drive.servo_steps and (self.step + k) % drive.servo_steps == 0:
-                        drive.servo(data)
+        for _ in range(steps):
             mujoco.mj_step(model, data)
             for watch in self._step_watchers:
                 watch()
 
     def _end_period(self) -> None:
-        if not plausible(self._qpos, self._bound, self._warning_counts, self._warnings):
+        if not plausible(self._qpos, self._bounds, self._warning_counts, self._warnings):
             raise self._diverged()
         self._ticks_done += 1
         if self._ticks_done % 6 == 0:
@@ -147,7 +147,7 @@ class Simulation(TickedSimulation):
         elif not np.isfinite(data.qpos).all():
             why = "a position is not finite"
         else:
-            why = f"a position is beyond {self._bound:g}"
+            why = f"a position is beyond {self._bound:g} m, or an angle without bounds"
         error = SimulationDivergedError(f"the physics diverged at t = {self.time:.3f} s: {why}")
         error.snapshots = tuple(self._history)
         return error
@@ -162,3 +162,14 @@ class Simulation(TickedSimulation):
         mujoco.mj_forward(self.model, self.data)
         # mj_forward recomputes the warm start; put the stored one back
         mujoco.mj_setState(self.model, self.data, state, _STATE)
+
+
+def _bounds(model: mujoco.MjModel, bound: float) -> Array:
+    """Largest plausible magnitude of each entry of qpos: ``bound`` [m] where it is a position."""
+    bounds = np.full(model.nq, 1e9)
+    for kind, first in zip(model.jnt_type, model.jnt_qposadr, strict=True):
+        if kind == mujoco.mjtJoint.mjJNT_SLIDE:
+            bounds[first] = bound
+        elif kind == mujoco.mjtJoint.mjJNT_FREE:
+            bounds[first : first + 3] = bound
+    return bounds

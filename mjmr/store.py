@@ -259,7 +259,17 @@ def _connect(path: Path) -> sqlite3.Connection:
 def _meta(db: sqlite3.Connection) -> dict[str, Any] | None:
     if not db.execute("SELECT 1 FROM sqlite_master WHERE name = 'meta'").fetchone():
         return None
-    return {name: json.loads(value) for name, value in db.execute("SELECT name, value FROM meta")}
+    return {name: _parse(value) for name, value in db.execute("SELECT name, value FROM meta")}
+
+
+def _parse(text: str) -> Any:
+    try:
+        return json.loads(text)
+    except (TypeError, ValueError) as e:
+        raise StoreError(
+            f"{FILE} is damaged ({text!r:.40} is no JSON); move it elsewhere, or use --fresh to "
+            "set its folder aside and start anew"
+        ) from e
 
 
 def read_outcomes(folder: Path) -> list[Outcome]:
@@ -284,7 +294,7 @@ def _outcomes(db: sqlite3.Connection) -> Iterator[Outcome]:
         "ORDER BY condition, seed"
     ):
         yield Outcome(
-            Condition(json.loads(key)),
+            Condition(_parse(key)),
             seed,
             status,
             decode(metrics),
@@ -370,7 +380,7 @@ def encode(metrics: Mapping[str, Metric]) -> str:
 
 def decode(text: str) -> dict[str, Metric]:
     """Inverse of :func:`encode`."""
-    found = json.loads(text)
+    found = _parse(text)
     return {n: float(v["float"]) if isinstance(v, dict) else v for n, v in found.items()}
 
 

@@ -74,7 +74,15 @@ class Ball:
 
 
 class World:
-    """A rectangular floor with a wall around it, and what stands on it."""
+    """A rectangular floor with a wall around it, and what stands on it.
+
+    Attributes:
+        bounds: Inner faces of the wall (4,) [m].
+        field: Marked playing field (4,) [m], or None.
+        props: Boxes and balls, in order of declaration.
+        groups: Robots, in order of declaration.
+        simulation: The one that has the robots now.
+    """
 
     def __init__(
         self,
@@ -104,6 +112,7 @@ class World:
         self.floor = floor
         self.props: list[Box | Ball] = []
         self.groups: list[Group] = []
+        self.simulation: Any = None
         self._edits: list[Callable[[Any], None]] = []
 
     @classmethod
@@ -183,11 +192,18 @@ class World:
             change(spec)
         return spec
 
-    def to_xml(self) -> str:
-        """MJCF text of this world, which MuJoCo's own viewer opens."""
-        spec = self.spec()
-        spec.compile()
-        return spec.to_xml()
+    def to_xml(self, timestep: float = 1 / 240) -> str:
+        """MJCF text of this world, which MuJoCo's own viewer opens.
+
+        Its keyframe ``start`` has the robots where they start; timestep and force limits are those
+        of a :class:`mjmr.simulation.Simulation` with this timestep.
+
+        Args:
+            timestep: Of the physics [s].
+        """
+        from mjmr.world_spec import export_xml
+
+        return export_xml(self, timestep)
 
     def _check_inside(self, group: Group) -> None:
         r = group.platform.radius

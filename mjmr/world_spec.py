@@ -46,6 +46,21 @@ def build_spec(world: "World") -> mujoco.MjSpec:
     return spec
 
 
+def export_xml(world: "World", timestep: float) -> str:
+    """MJCF text of ``world`` with a keyframe ``start``; see :meth:`mjmr.world.World.to_xml`."""
+    spec = world.spec()
+    spec.option.timestep = timestep
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    for group in world.groups:
+        group.platform.bind(model, group.prefixes).place(data, group.start)
+    for k, joint in enumerate(spec.joints):
+        joint.actfrcrange = model.jnt_actfrcrange[model.joint(joint.name).id if joint.name else k]
+    spec.add_key(name="start", qpos=data.qpos, act=data.act)
+    spec.compile()
+    return spec.to_xml()
+
+
 def _named_props(world: "World"):
     return [(f"{type(p).__name__.lower()}{i}", p) for i, p in enumerate(world.props)]
 

@@ -230,7 +230,7 @@ class Navigator:
         return command
 
     def _checked(self, name: str, value: ArrayLike) -> NDArray[np.float64]:
-        a = np.ascontiguousarray(value, dtype=np.float64)
+        a = np.array(value, dtype=np.float64, order="C")  # compiled for arrays of its own
         if a.shape != (self._n, 2):
             raise InvalidInputError(f"{name} has shape {a.shape}; it must be ({self._n}, 2)")
         return a

@@ -44,12 +44,17 @@ class RawTracker:
     A lost report is replaced by dead reckoning from the last one.
     """
 
-    def __init__(self, n: int, period: float):
-        """Args: n: Robots. period: Control period [s]."""
+    def __init__(self, starts: Array, period: float):
+        """Start from where the robots were put.
+
+        Args:
+            starts: Nominal starts (n, 2) [m], believed until a robot's first report.
+            period: Control period [s].
+        """
         self._period = period
-        self._position = np.zeros((n, 2))
-        self._velocity = np.zeros((n, 2))
-        self.yaw = np.zeros(n)
+        self._position = starts
+        self._velocity = np.zeros(starts.shape)
+        self.yaw = np.zeros(len(starts))
 
     def update(self, report: Array, executed: Array) -> tuple[Array, Array]:
         """Position [m] and velocity [m/s], (n, 2) each, world frame.
@@ -60,7 +65,7 @@ class RawTracker:
         """
         lost = np.isnan(report[:, 0])
         some = lost.any()
-        self.yaw = np.where(lost, self.yaw, report[:, 2]) if some else report[:, 2]
+        self.yaw = np.where(lost, self.yaw, report[:, 2]) if some else report[:, 2].copy()
         velocity = world_velocity(executed, self.yaw)
         position = report[:, :2]
         if some:
@@ -73,11 +78,11 @@ class RawTracker:
 class FilterTracker:
     """The paper's real system: an extended Kalman filter behind the cameras."""
 
-    def __init__(self, n: int, period: float, position_noise: float):
-        """Start without an estimate.
+    def __init__(self, starts: Array, period: float, position_noise: float):
+        """Start from where the robots were put.
 
         Args:
-            n: Robots.
+            starts: Nominal starts (n, 2) [m], believed until a robot's first report.
             period: Control period [s].
             position_noise: Deviation of reported positions [m]; the filter assumes at least
                 0.1 mm, for what its model leaves out.
@@ -85,14 +90,10 @@ class FilterTracker:
         config = PoseFilterConfig(
             position_noise=max(position_noise, 1e-4), yaw_noise=1e-3, speed_noise=0.01
         )
-        self._filter = PoseFilter(n, config)
-        self._period = period
+        self._filter = PoseFilter(len(starts), config)
+        self._starts, self._period = starts, period
         self._started = False
-
-    @property
-    def yaw(self) -> Array:
-        """Estimated yaw, (n,) [rad]."""
-        return self._filter.pose[:, 2]
+        self.yaw = np.zeros(len(starts))
 
     def update(self, report: Array, executed: Array) -> tuple[Array, Array]:
         """Position and velocity, (n, 2) each; see :meth:`RawTracker.update`."""
@@ -100,7 +101,13 @@ class FilterTracker:
             self._filter.predict(executed, self._period)
         self._filter.update(report)
         self._started = True
-        return self._filter.pose[:, :2], self._filter.velocity
+        pose, velocity = self._filter.pose, self._filter.velocity
+        unknown = np.isnan(pose[:, 0])
+        if unknown.any():
+            pose[unknown] = np.column_stack([self._starts, np.zeros(len(pose))])[unknown]
+            velocity[unknown] = 0.0
+        self.yaw = pose[:, 2].copy()
+        return pose[:, :2], velocity
 
 
 class Pilot:
@@ -133,23 +140,21 @@ class Pilot:
         self.shuttle, self.navigator = Shuttle(scene), navigator
         self._tracker, self._predict = tracker, predict
         self._pending: deque[Array] = deque([np.zeros((n, 2))] * latency)
-        self._sent: deque[Array] = deque([np.zeros((n, 3))] * (latency + 1))
         self._cycle = (scene.starts, np.zeros((n, 2)), np.zeros((n, 2)))
         self.seconds = 0.0
 
-    def step(self, report: Array, executed: Array, stopping: NDArray[np.bool_]) -> Array:
+    def step(self, report: Array, executed: Array, hearing: NDArray[np.bool_]) -> Array:
         """Commands (n, 3), body frame.
 
-        A robot that says it stops, whose telemetry is not what it was told, or whose report is
-        missing, is told to brake, and the others expect it to.
+        A robot that does not hear, or whose report is missing, is told to brake, and the others
+        expect it to.
 
         Args:
             report: Newest report (n, 3), world frame; NaN rows where lost.
             executed: Twists the robots say they execute, (n, 3), body frame.
-            stopping: Robots that say they stop by themselves, (n,).
+            hearing: Robots that acknowledged the last command and announce no stop, (n,).
         """
-        heard = np.abs(executed - self._sent.popleft()).max(axis=1) < 1e-9
-        active = heard & ~stopping & ~np.isnan(report[:, 0])
+        active = hearing & ~np.isnan(report[:, 0])
         position, velocity = self._tracker.update(report, executed)
         self.shuttle.update(position)
         if self._predict and self._pending:
@@ -163,9 +168,7 @@ class Pilot:
             self._pending.append(planar)
             self._pending.popleft()
         self._cycle = position, velocity, planar
-        command = body_twist(planar, self._tracker.yaw)
-        self._sent.append(command)
-        return command
+        return body_twist(planar, self._tracker.yaw)
 
     @property
     def stops(self) -> Array:

@@ -38,11 +38,11 @@ def trial(
 
         simulation: Any = Simulation(world, seed=seed, control_period=PERIOD)
         meter: Any = ContactMeter(simulation)
-        tracker: Any = FilterTracker(robots.n, PERIOD, condition["sigma_mm"] / 1000.0)
+        tracker: Any = FilterTracker(scene.starts, PERIOD, condition["sigma_mm"] / 1000.0)
     else:
         simulation = KinematicSimulation(world, seed=seed, control_period=PERIOD)
         meter = OverlapMeter(simulation)
-        tracker = RawTracker(robots.n, PERIOD)
+        tracker = RawTracker(scene.starts, PERIOD)
     config = NavigatorConfig(
         radius=robots.platform.radius,
         period=PERIOD,
@@ -62,7 +62,8 @@ def trial(
     spent, sampled = np.zeros(cycles), 0
     for k, now in enumerate(simulation.ticks(condition["duration"])):
         report = robots.localizer.read()
-        command = pilot.step(report, robots.executed, robots.stopping(now))
+        hearing = robots.acknowledged & ~robots.stopping(now)
+        command = pilot.step(report, robots.executed, hearing)
         spent[k] = pilot.seconds
         robots.drive(command)
         sampled += int(navigator.sampled.sum())
@@ -134,10 +135,15 @@ class _Motion:
         )
         return {
             "top_speed": float(speed.max()),
-            "acceleration": float(change[inside & (change > 0)].mean()),
-            "braking": float(-change[inside & (change < 0)].mean()),
+            "acceleration": _mean(change[inside & (change > 0)]),
+            "braking": _mean(-change[inside & (change < 0)]),
             "yaw_deg": float(np.degrees(self._yaw)),
         }
+
+
+def _mean(values: np.ndarray) -> float:
+    """Mean; NaN where the run was too short to have any."""
+    return float(values.mean()) if values.size else float("nan")
 
 
 def prepare() -> None:

@@ -96,11 +96,11 @@ def build(condition: Mapping[str, Any], seed: int) -> tuple[World, Group, Scene]
             loss=_LOSS if lossy else 0.0,
         )
     )
-    start = condition["duration"] / 3
+    start, victim = condition["duration"] / 3, min(1, robots.n - 1)
     if condition["failure"] in ("dead", "stopped"):
-        robots.faults.add(Fault(kind=condition["failure"], robot=1, start=start))
+        robots.faults.add(Fault(kind=condition["failure"], robot=victim, start=start))
     elif condition["failure"] == "commands-lost":
-        robots.faults.add(Fault(kind="commands-lost", robot=1, start=start, end=2 * start))
+        robots.faults.add(Fault(kind="commands-lost", robot=victim, start=start, end=2 * start))
     return world, robots, place
 
 

@@ -35,7 +35,7 @@ EXAMPLES
   mjmr show safe-navigation
   mjmr run safe-navigation
   mjmr run safe-navigation --size standard --check
-  mjmr run safe-navigation --only sigma=0,4 --seeds 10 --out renders/trial
+  mjmr run safe-navigation --only sigma_mm=0,4 --seeds 10 --out renders/trial
 
 FILES
   renders/STUDY/SIZE/   what a run leaves: results.sqlite, claims.json, claims.md, run.json,

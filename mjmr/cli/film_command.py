@@ -40,10 +40,13 @@ class Film:
 def main(arguments: Sequence[str]) -> int:
     """Make a film."""
     a = parse(Film, "film", arguments, _MORE)
+    from rich.console import Console
+
     from mjmr.film_options import FilmOptions
+    from mjmr.progress import doing
     from mjmr.registry import load_study
     from mjmr.runner import default_folder
-    from mjmr.study_calls import make_film
+    from mjmr.study_calls import call_study, make_film
 
     study = load_study(a.study)
     study.size(a.size)
@@ -53,8 +56,14 @@ def main(arguments: Sequence[str]) -> int:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as e:
         raise MjmrError(f"cannot write to {path.parent}: {e.strerror}") from e
+    prepare = study.resolve("prepare")
+    messages = Console(stderr=True)
     try:
-        make_film(study, path, options)
+        if prepare is not None:
+            with doing(messages, "preparing (compiles on the first run) ..."):
+                call_study("prepare", prepare)
+        with doing(messages, "making the film ..."):
+            make_film(study, path, options)
     except MissingGLError:
         print(f"mjmr: {GL_ADVICE}", file=sys.stderr)
         return 1

@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 class PlanarDrive:
     """Slide, slide, hinge: velocity servos whose set point is ramped, with feed-forward."""
 
-    servo_steps: int | None = None
-
     def __init__(self, model: "mujoco.MjModel", prefixes: Sequence[str]):
         """Look up every index once."""
         self._half_step = model.opt.timestep / 2.0
@@ -64,9 +62,6 @@ class PlanarDrive:
             data.qpos, data.act, data.ctrl, self._qpos, self._act, self._servo, self._feed,
             start, target, period, self._half_step,
         )  # fmt: skip
-
-    def servo(self, data: "mujoco.MjData") -> None:
-        """Nothing: the ramp is integrated by the actuators themselves."""
 
 
 @njit

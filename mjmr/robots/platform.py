@@ -34,12 +34,6 @@ class Drive(Protocol):
         """Set the actuators for one control period, from twist ``start`` to ``target``, (n, 3)."""
         ...
 
-    def servo(self, data: "mujoco.MjData") -> None:
-        """Firmware's own loop, called every ``servo_steps`` physics steps if that is not None."""
-        ...
-
-    servo_steps: int | None
-
 
 class Platform(ABC):
     """A kind of robot.

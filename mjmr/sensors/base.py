@@ -54,6 +54,7 @@ class Sensor(ABC):
                 f"latency and phase must be 0 or more; got {latency} s and {phase} s"
             )
         self.rate, self.latency, self.phase = float(rate), float(latency), float(phase)
+        self.carrier: Group | None = None
         self._simulation: TickedSimulation | None = None
 
     def bind(self, simulation: "TickedSimulation", group: "Group", stream: str) -> None:

@@ -1,13 +1,15 @@
 """The study's own tests: outcomes, never coordinates."""
 
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 
 from experiments.safe_navigation import study
 from experiments.safe_navigation import trial as module
-from experiments.safe_navigation.pilot import RawTracker, Shuttle
+from experiments.safe_navigation.pilot import FilterTracker, RawTracker, Shuttle
 from experiments.safe_navigation.trial import trial
 from experiments.safe_navigation.worlds import build, scene
 from mjmr.errors import TruthError
@@ -57,7 +59,7 @@ def test_a_controller_that_reads_the_truth_is_stopped(monkeypatch):
     """Truth is shut in this study's own loop, in both modes."""
 
     class Peeking(module.Pilot):
-        def step(self, report, executed, stopping):
+        def step(self, report, executed, hearing):
             return peek()
 
     monkeypatch.setattr(module, "Pilot", Peeking)
@@ -75,8 +77,52 @@ def test_a_controller_that_reads_the_truth_is_stopped(monkeypatch):
             trial(study.condition(mode=mode, duration=0.1), 0, keep)
 
 
+def test_every_scene_runs_in_every_mode_with_every_failure():
+    """Half a second each: nothing a user can ask for crashes, lost first reports included."""
+    values = {p.name: p.values for p in study.parameters}
+    for mode in values["mode"] or ():
+        for name in values["scene"] or ():
+            for failure in values["failure"] or ():
+                for seed in range(3):
+                    run(seed, mode=mode, scene=name, failure=failure, latency=1, duration=0.5)
+
+
+def test_a_robot_without_a_first_report_is_believed_at_its_nominal_start():
+    starts = np.array([[1.0, 2.0], [-1.0, -2.0]])
+    report = np.array([[np.nan] * 3, [-1.1, -2.1, 0.0]])
+    for tracker in (RawTracker(starts, 0.1), FilterTracker(starts, 0.1, 0.001)):
+        position, velocity = tracker.update(report, np.zeros((2, 3)))
+        np.testing.assert_allclose(position, [[1.0, 2.0], [-1.1, -2.1]])
+        np.testing.assert_allclose(velocity, 0.0, atol=1e-12)
+
+
+def test_nothing_is_compiled_after_prepare():
+    """In a fresh process, since compiled signatures stay."""
+    script = """
+from experiments.safe_navigation import study
+from experiments.safe_navigation.trial import prepare, trial
+from numba.core.dispatcher import Dispatcher
+import gc
+prepare()
+def signatures():
+    return {id(d): len(d.signatures) for d in gc.get_objects() if isinstance(d, Dispatcher)}
+before = signatures()
+for failure in ("none", "stopped", "reports-lost"):
+    for scene in ("A", "cross10", "overlap"):
+        for mode in ("metric", "physical"):
+            trial(study.condition(mode=mode, scene=scene, failure=failure, sigma_mm=2.0,
+                                  motion="bisection", fail_safe=True, duration=0.5), 0)
+trial(study.condition(scene="straight", duration=0.5), 0)
+assert signatures() == before
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=300, check=False
+    )
+    assert done.returncode == 0, done.stderr
+
+
 def test_a_lost_report_is_bridged_exactly_by_telemetry():
-    tracker = RawTracker(2, 0.1)
+    tracker = RawTracker(np.array([[5.0, 5.0], [6.0, 6.0]]), 0.1)
     executed = np.zeros((2, 3))
     tracker.update(np.array([[0.0, 0, 0], [1.0, 0, 0]]), executed)
     moving = np.array([[1.0, 0, 0], [0, 2.0, 0]])

@@ -1,3 +1,4 @@
+import contextlib
 import csv
 import json
 import os
@@ -210,3 +211,24 @@ def test_failed_trials_are_exit_1_without_traceback(capsys):
     out, err = capsys.readouterr()
     assert "the coin rolled away" in err
     assert "Traceback" not in out + err
+
+
+def test_every_example_in_the_helps_is_good_input(capsys):
+    """Each line that starts with mjmr names a command, a study and conditions there are."""
+    from mjmr.cli import COMMANDS
+    from mjmr.conditions import parse_filter
+    from mjmr.registry import load_study
+
+    seen = 0
+    for words in ([], *([c] for c in COMMANDS)):
+        with contextlib.suppress(SystemExit):
+            main([*words, "--help"])
+        for line in capsys.readouterr().out.splitlines():
+            example = line.split()
+            if example[:1] != ["mjmr"] or len(example) < 2 or example[1] not in COMMANDS:
+                continue
+            conditions = [w for w in example if "=" in w and not w.startswith(("MJMR", "KEY"))]
+            if "safe-navigation" in example:
+                parse_filter(load_study("safe-navigation").parameters, conditions)
+                seen += 1
+    assert seen >= 8

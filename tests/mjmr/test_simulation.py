@@ -374,3 +374,100 @@ def test_two_groups_share_a_world():
         assert simulation.truth.poses(blue)[0, 0] < 0.9
         assert simulation.truth.poses(blue)[1, 1] > 1.1
         assert simulation.team.n == 3
+
+
+def test_turning_for_ever_is_no_divergence():
+    world, robots = soccer([[0.0, 0.0, 0.0]])
+    simulation = Simulation(world)
+    for _ in simulation.ticks(15.0):
+        robots.drive([[0.0, 0.0, 12.0]])
+    assert np.abs(simulation.data.qpos).max() > 100.0
+    assert -np.pi < simulation.truth.poses(robots)[0, 2] <= np.pi
+
+
+def test_a_snapshot_leads_out_of_a_divergence():
+    world, robots = soccer(POSES)
+    world.add_golf_ball(0.0, 0.0)
+    simulation = Simulation(world)
+    for _ in simulation.ticks(0.5):
+        robots.drive(np.zeros((3, 3)))
+    good = simulation.snapshot()
+    simulation.data.qvel[-6:] = 1e12
+
+    def go(seconds):
+        for _ in simulation.ticks(seconds):
+            robots.drive(np.zeros((3, 3)))
+
+    with pytest.raises(SimulationDivergedError):
+        go(0.1)
+    simulation.restore(good)
+    go(0.5)
+    assert simulation.time == pytest.approx(1.0)
+
+
+def test_exported_mjcf_starts_where_the_robots_start():
+    world, robots = soccer(POSES)
+    world.add_golf_ball(0.3, 0.2)
+    model = mujoco.MjModel.from_xml_string(world.to_xml())
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)
+    mujoco.mj_forward(model, data)
+    reference = Simulation(world)
+    assert model.opt.timestep == pytest.approx(reference.model.opt.timestep)
+    np.testing.assert_allclose(model.jnt_actfrcrange, reference.model.jnt_actfrcrange, rtol=1e-5)
+    for i, pose in enumerate(POSES):
+        found = data.body(f"soccer_bot{i}/base")
+        np.testing.assert_allclose(found.xpos[:2], pose[:2], atol=1e-5)
+
+
+def test_a_dead_robot_never_acknowledges_and_one_out_of_radio_does_again():
+    world, robots = soccer(POSES)
+    robots.faults.add(Fault(kind="dead", robot=0, start=0.5))
+    robots.faults.add(Fault(kind="commands-lost", robot=1, start=0.5, end=1.0))
+    heard = []
+    for _ in KinematicSimulation(world).ticks(1.5):
+        heard.append(robots.acknowledged.copy())
+        robots.drive(np.tile([0.3, 0.0, 0.0], (3, 1)))
+    heard = np.array(heard)
+    np.testing.assert_array_equal(np.flatnonzero(~heard[:, 0]), np.arange(31, 90))
+    np.testing.assert_array_equal(np.flatnonzero(~heard[:, 1]), np.arange(31, 61))
+    assert heard[:, 2].all()
+
+
+def test_a_world_serves_one_simulation_at_a_time():
+    world, _ = soccer(POSES)
+    first = KinematicSimulation(world)
+    KinematicSimulation(world)
+    with pytest.raises(InvalidInputError, match="another simulation"):
+        next(first.ticks(1.0))
+
+
+def test_a_sensor_has_one_group():
+    from mjmr.sensors.localizer import Localizer
+
+    world, robots = soccer([[-1.0, 0.0, 0.0]])
+    others = world.add_group(SoccerBot, [[1.0, 0.0, 0.0]])
+    eye = Localizer()
+    robots.mount(eye)
+    with pytest.raises(InvalidInputError, match="another group"):
+        others.mount(eye)
+
+
+@pytest.mark.parametrize("duration", [-1.0, np.nan, np.inf])
+def test_bad_durations_are_refused(duration):
+    world, _ = soccer(POSES)
+    with pytest.raises(InvalidInputError, match="duration"):
+        next(KinematicSimulation(world).ticks(duration))
+    with pytest.raises(InvalidInputError, match="seed"):
+        KinematicSimulation(world, seed=-1)
+
+
+def test_observers_see_the_start_once():
+    world, _ = soccer(POSES)
+    simulation = KinematicSimulation(world)
+    seen = []
+    simulation.observe(lambda: seen.append(simulation.time))
+    for seconds in (0.0, 0.1, 0.1):
+        for _ in simulation.ticks(seconds):
+            pass
+    np.testing.assert_allclose(seen, np.arange(13) / 60)

@@ -135,6 +135,7 @@ def corrupt_page(path):
         (corrupt_page, "damaged"),
         (lambda p: _sql(p, "UPDATE meta SET value = '99' WHERE name = 'schema_version'"), "schema"),
         (lambda p: _sql(p, "DROP TABLE trials"), "not of mjmr"),
+        (lambda p: _sql(p, "UPDATE meta SET value = '{\"' WHERE name = 'digest'"), "damaged"),
     ],
 )
 def test_damaged_files_are_named_and_left_alone(tmp_path, harm, said):
@@ -155,6 +156,14 @@ def test_damaged_files_are_named_and_left_alone(tmp_path, harm, said):
     assert aside is not None
     assert snapshot(aside) == before
     Store(folder, META).close()
+
+
+def test_damaged_metrics_are_named(tmp_path):
+    with Store(tmp_path / "r", META) as store:
+        store.record(ok(A, 0, v=0.1))
+    _sql(tmp_path / "r" / "results.sqlite", "UPDATE trials SET metrics = '{\"v\": 0.'")
+    with pytest.raises(StoreError, match="damaged"):
+        read_outcomes(tmp_path / "r")
 
 
 def _sql(path, statement):

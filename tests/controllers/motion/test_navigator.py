@@ -249,3 +249,13 @@ def test_the_defaults_are_the_paper_s_robot():
 def test_there_must_be_a_robot(n):
     with pytest.raises(InvalidInputError, match="n is"):
         Navigator(BOUNDS, None, n, NavigatorConfig(), np.random.default_rng(0))
+
+
+@pytest.mark.parametrize("n", [1, 3])
+def test_read_only_arrays_are_as_good_as_any(n):
+    navigator = Navigator([-2, -2, 2, 2], None, n, NavigatorConfig(), np.random.default_rng(0))
+    position = np.column_stack([np.linspace(-1, 1, n), np.zeros(n)])
+    position.setflags(write=False)
+    velocity = np.zeros((n, 2))
+    velocity.setflags(write=False)
+    assert navigator.step(position, velocity, np.ones((n, 2))).shape == (n, 2)
