@@ -11,7 +11,7 @@ _MORE = """
 EXAMPLES
   mjmr run safe-navigation
   mjmr run safe-navigation --size standard --workers 8
-  mjmr run safe-navigation --only scene=A sigma_mm=0,4 --seeds 10 --out /tmp/try
+  mjmr run safe-navigation --only scene=A sigma_mm=0,4 --seeds 10 --out renders/try
   mjmr run safe-navigation --size standard --check
 
 FILES, in renders/STUDY/SIZE or --out

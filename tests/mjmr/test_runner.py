@@ -89,7 +89,7 @@ def test_a_run_leaves_what_it_promises(tmp_path):
     assert "bias-shows" in out
     assert "inconclusive" not in out
     assert "trials 10/10" in messages
-    assert "compiling (first run only)" in messages
+    assert "preparing (compiles on the first run)" in messages
 
 
 def test_one_worker_and_two_give_the_same_file(tmp_path, finished):
