@@ -2,4 +2,4 @@
 
 from mjmr.robots.soccer_bot import SoccerBot
 
-PLATFORMS = {"soccer_bot": SoccerBot}
+__all__ = ["SoccerBot"]
