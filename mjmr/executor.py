@@ -23,6 +23,7 @@ from typing import Any
 
 from mjmr.conditions import Condition
 from mjmr.errors import InvalidInputError, MissingGLError
+from mjmr.parts import Job
 from mjmr.store import Outcome
 from mjmr.study import Trial
 
@@ -42,12 +43,12 @@ class Executor(ABC):
 
     @abstractmethod
     def run(
-        self, study: str, trials: Iterable[Trial], stop: Callable[[], bool] = lambda: False
+        self, job: Job, trials: Iterable[Trial], stop: Callable[[], bool] = lambda: False
     ) -> Generator[Outcome, None, None]:
         """Yield the outcome of every trial, in the order they finish.
 
         Args:
-            study: Name, or dotted reference ``module:attribute``, of the study.
+            job: The study, and what was swapped in it.
             trials: What to compute; taken one by one as workers become free.
             stop: Looked at a few times a second; when it says True, trials under way are given up
                 and the iteration ends.
@@ -68,7 +69,7 @@ class LocalExecutor(Executor):
         self.workers = workers
 
     def run(
-        self, study: str, trials: Iterable[Trial], stop: Callable[[], bool] = lambda: False
+        self, job: Job, trials: Iterable[Trial], stop: Callable[[], bool] = lambda: False
     ) -> Generator[Outcome, None, None]:
         """See :meth:`Executor.run`."""
         again: deque[_Task] = deque()
@@ -84,7 +85,7 @@ class LocalExecutor(Executor):
                             break
                         idle = next((w for w in workers if not w.busy), None)
                         if idle is None:
-                            idle = _Worker(study)
+                            idle = _Worker(job)
                             workers.append(idle)
                         busy[idle.start(task)] = idle, task
                     if not busy:
@@ -111,8 +112,8 @@ class _Task:
 class _Worker:
     """A pool of one process that computes one trial at a time, replaced when it dies."""
 
-    def __init__(self, study: str):
-        self._study = study
+    def __init__(self, job: Job):
+        self._job = job
         self._pool: Any = None
         self.busy = False
 
@@ -125,7 +126,7 @@ class _Worker:
                 self.kill()
                 self._pool = _start_pool()
             with contextlib.suppress(RuntimeError):  # died just now
-                return self._pool.schedule(compute, args=(self._study, condition, seed))
+                return self._pool.schedule(compute, args=(self._job, condition, seed))
         raise RuntimeError("a worker process cannot be started")
 
     def finish(self, future: Future, task: _Task) -> Outcome | None:
@@ -212,26 +213,26 @@ def _watch(parent: int) -> None:
 
 
 @functools.cache
-def _trial_function(study: str) -> Callable[..., Any]:
+def _trial_function(job: Job) -> Callable[..., Any]:
     from mjmr.registry import load_study
 
-    loaded = load_study(study)
+    loaded = load_study(job.study).choose(job.parts)
     prepare = loaded.resolve("prepare")
     if prepare is not None:
         prepare()  # what the driver has compiled is loaded here, not inside the first trial
-    return loaded.resolve("trial")
+    return loaded.bound_trial()
 
 
-def compute(study: str, condition: Condition, seed: int) -> Outcome:
+def compute(job: Job, condition: Condition, seed: int) -> Outcome:
     """Compute one trial, here; whatever goes wrong is in the outcome.
 
     Args:
-        study: Name or dotted reference of the study.
+        job: The study, and what was swapped in it.
         condition: Complete condition.
         seed: Seed of the trial.
     """
     try:
-        function = _trial_function(study)
+        function = _trial_function(job)
         start = time.perf_counter()
         returned = function(condition, seed)
         wall = {"wall_trial": time.perf_counter() - start}

@@ -149,7 +149,7 @@ class _Panel:
             dtype=np.int64,
         ).reshape(-1, 7)
         self._times, self._poses = recording.times, recording.poses
-        self._movers = recording.movers
+        self._movers, self._positions = recording.movers, recording.positions
         self._colours = palette(team.n)
         self._renderer = Renderer(self._model, width, height, options.look)
         self._azimuth: float | None = None
@@ -159,9 +159,12 @@ class _Panel:
         """Picture at ``time`` [s], RGB."""
         index = min(int(np.searchsorted(self._times, time - 1e-9)), len(self._times) - 1)
         poses, model, data = self._poses[index], self._model, self._data
-        for rows, drive in self._drives:
-            drive.place(data, poses[rows])
-        data.qpos[self._mover_qpos] = self._movers[index]
+        if self._positions is not None:
+            data.qpos[:] = self._positions[index]
+        else:
+            for rows, drive in self._drives:
+                drive.place(data, poses[rows])
+            data.qpos[self._mover_qpos] = self._movers[index]
         mujoco.mj_kinematics(model, data)
         mujoco.mj_camlight(model, data)
         renderer, recording = self._renderer, self._recording

@@ -7,17 +7,19 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from mjmr.errors import InvalidInputError, TruthError
+from mjmr.errors import InvalidInputError, TruthError, UnknownNameError
 from mjmr.randomness import Streams
 from mjmr.team import Team
+from mjmr.watch import announce
 
 if TYPE_CHECKING:
     from mjmr.group import Group
     from mjmr.world import World
 
 Array = NDArray[np.float64]
+NOTES = ("goals", "waypoints", "stops")
 
 
 class Truth:
@@ -83,6 +85,9 @@ class TickedSimulation(ABC):
         truth: What really is; guarded.
         streams: The trial's random streams, by name.
         acting: True while the body of a ``ticks`` loop runs.
+        noted: True if somebody keeps what :meth:`note` says; saves computing it otherwise.
+        notes: What was noted last; see :meth:`note`.
+        caption: Returns a line of text for films; it may read truth.
     """
 
     def __init__(
@@ -101,6 +106,9 @@ class TickedSimulation(ABC):
         self.streams = Streams(seed)
         self.truth = Truth(self)
         self.acting = False
+        self.noted = False
+        self.notes: dict[str, Array] = {}
+        self.caption: Callable[[], str] = str
         self._observers: list[Callable[[], None]] = []
         self._started = False
 
@@ -112,6 +120,33 @@ class TickedSimulation(ABC):
             for name, sensor in group.sensors.items():
                 sensor.bind(self, group, f"{group.name}/{name}")
         self._sensors = [s for g in self.world.groups for s in g.sensors.values()]
+        announce(self)
+
+    def note(self, **arrays: ArrayLike) -> None:
+        """Say what films and traces shall show from now on; free when nobody keeps it.
+
+        Args:
+            arrays: ``goals`` (rings), ``waypoints`` (the path to the goal leads through them) and
+                ``stops`` (where the planned command followed by braking ends), each of shape
+                (n, 2) over the team [m], world frame; NaN rows are not drawn.
+
+        Raises:
+            UnknownNameError: Another name.
+            InvalidInputError: Another shape.
+        """
+        if not self.noted:
+            return
+        fresh = dict(self.notes)
+        for key, value in arrays.items():
+            if key not in NOTES:
+                raise UnknownNameError("note", key, NOTES)
+            array = np.array(value, dtype=np.float64)
+            if array.shape != (self.team.n, 2):
+                raise InvalidInputError(
+                    f"{key} must have shape ({self.team.n}, 2); got {array.shape}"
+                )
+            fresh[key] = array
+        self.notes = fresh
 
     @property
     def time(self) -> float:
@@ -209,6 +244,10 @@ class TickedSimulation(ABC):
     @abstractmethod
     def mover_poses(self) -> Array:
         """Poses (k, 7) of the props that can move."""
+
+    def full_positions(self) -> Array | None:
+        """Every coordinate of the physics (nq,), a copy; None if there is none but the poses."""
+        return None
 
     @abstractmethod
     def _begin_period(self) -> None: ...

@@ -118,7 +118,7 @@ def draw_notes(
         view: Its camera.
         poses: Robots' poses (n, 3).
         radii: Robots' radii (n,) [m].
-        notes: See :meth:`mjmr.recording.Recording.note`.
+        notes: See :meth:`mjmr.loop.TickedSimulation.note`.
         colours: One a robot.
     """
     goals, waypoints = notes.get("goals"), notes.get("waypoints")

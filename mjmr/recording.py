@@ -1,22 +1,22 @@
 """Recording: states of a run over time, with what the controller wants to show beside them."""
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mjmr.errors import InvalidInputError, UnknownNameError
+from mjmr.errors import MjmrError
+from mjmr.watch import watching
 
 if TYPE_CHECKING:
     from mjmr.loop import TickedSimulation
 
 Array = NDArray[np.float64]
-NOTES = ("goals", "waypoints", "stops")
 
 
 class Recording:
-    """Poses of every robot and free prop after each control period, for films and traces.
+    """Positions of every robot and free prop after each control period, for films and traces.
 
     Attributes:
         world: What was simulated.
@@ -30,43 +30,24 @@ class Recording:
         Args:
             simulation: What to record, from its present state on.
             caption: Called at every record for a line of text under the picture; it may read
-                truth.
+                truth. None takes the simulation's own.
         """
         self.world, self.team = simulation.world, simulation.team
         self.period = simulation.control_period
+        simulation.noted = True
         self._simulation = simulation
         self._times: list[float] = []
         self._poses: list[Array] = []
         self._movers: list[Array] = []
+        self._positions: list[Array] = []
         self._notes: list[dict[str, Array]] = []
         self._captions: list[str] = []
-        self._note: dict[str, Array] = {}
-        self._caption = caption or (lambda: "")
+        self._caption = caption
         simulation.observe(self._capture)
 
     def note(self, **arrays: ArrayLike) -> None:
-        """Say what to draw from now on; may be called by a controller's loop.
-
-        Args:
-            arrays: ``goals`` (rings), ``waypoints`` (the path to the goal leads through them) and
-                ``stops`` (where the planned command followed by braking ends), each of shape
-                (n, 2) over the team [m], world frame; NaN rows are not drawn.
-
-        Raises:
-            UnknownNameError: Another name.
-            InvalidInputError: Another shape.
-        """
-        fresh = dict(self._note)
-        for key, value in arrays.items():
-            if key not in NOTES:
-                raise UnknownNameError("note", key, NOTES)
-            array = np.array(value, dtype=np.float64)
-            if array.shape != (self.team.n, 2):
-                raise InvalidInputError(
-                    f"{key} must have shape ({self.team.n}, 2); got {array.shape}"
-                )
-            fresh[key] = array
-        self._note = fresh
+        """Say what to draw from now on; see :meth:`mjmr.loop.TickedSimulation.note`."""
+        self._simulation.note(**arrays)
 
     def _capture(self) -> None:
         simulation = self._simulation
@@ -74,8 +55,11 @@ class Recording:
         self._times.append(simulation.time)
         self._poses.append(self.team.stack([truth.poses(g) for g in self.team.groups]))
         self._movers.append(truth.movers())
-        self._notes.append(self._note)
-        self._captions.append(self._caption())
+        positions = simulation.full_positions()
+        if positions is not None:
+            self._positions.append(positions)
+        self._notes.append(simulation.notes)
+        self._captions.append((self._caption or simulation.caption)())
 
     def __len__(self) -> int:
         return len(self._times)
@@ -95,6 +79,11 @@ class Recording:
         """Free props' poses, shape (k, m, 7)."""
         return np.stack(self._movers)
 
+    @property
+    def positions(self) -> Array | None:
+        """Every coordinate of the physics, shape (k, nq); None of a kinematic simulation."""
+        return np.stack(self._positions) if self._positions else None
+
     def notes(self, index: int) -> dict[str, Array]:
         """What was noted for record ``index``."""
         return self._notes[index]
@@ -102,3 +91,22 @@ class Recording:
     def caption(self, index: int) -> str:
         """Line of text of record ``index``."""
         return self._captions[index]
+
+
+def record(trial: Callable[..., Any], condition: Mapping[str, Any], seed: int) -> Recording:
+    """Run a trial and record the simulation it builds.
+
+    Args:
+        trial: ``(condition, seed) -> metrics``; see :meth:`mjmr.study.Study.bound_trial`.
+        condition: A complete condition.
+        seed: Of the trial.
+
+    Raises:
+        MjmrError: The trial builds no simulation.
+    """
+    kept: list[Recording] = []
+    with watching(lambda simulation: kept.append(Recording(simulation))):
+        trial(condition, seed)
+    if not kept:
+        raise MjmrError("there is nothing to record: the trial built no simulation")
+    return kept[0]

@@ -22,6 +22,7 @@ from mjmr.conditions import parse_filter
 from mjmr.errors import GL_ADVICE, InvalidInputError, MissingGLError, MjmrError
 from mjmr.files import write_atomically
 from mjmr.film_options import FilmOptions
+from mjmr.parts import Job
 from mjmr.progress import Progress, doing, say, standard_output
 from mjmr.registry import load_study
 from mjmr.store import Outcome, Store, is_of, set_aside
@@ -225,10 +226,11 @@ class _Run:
 
             self.workers = min(self.options.workers or cpu_count(), len(pending))
             executor = LocalExecutor(self.workers)
+        job = Job(self.options.study, self.study.chosen)
         with (
             _interrupts() as stopped,
             Progress(self.messages, self.done, len(self.trials)) as progress,
-            contextlib.closing(executor.run(self.options.study, pending, stopped)) as outcomes,
+            contextlib.closing(executor.run(job, pending, stopped)) as outcomes,
         ):
             for outcome in outcomes:
                 store.record(outcome)

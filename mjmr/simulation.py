@@ -105,6 +105,10 @@ class Simulation(TickedSimulation):
         ids = self._mover_ids
         return np.concatenate([self.data.xpos[ids], self.data.xquat[ids]], axis=1)
 
+    def full_positions(self) -> Array:
+        """MuJoCo's ``qpos``, shape (nq,), a copy."""
+        return self.data.qpos.copy()
+
     def watch_steps(self, watcher: Callable[[], None]) -> None:
         """Call ``watcher`` after every physics step; for meters of contact, which are brief."""
         self._step_watchers.append(watcher)

@@ -4,6 +4,8 @@ What is heavy (the trial, claims, film, plots, world) is named by a dotted refer
 ``"package.module:attribute"`` and imported when first used, so that listing studies loads nothing.
 """
 
+import dataclasses
+import functools
 import hashlib
 import importlib
 import json
@@ -23,6 +25,7 @@ from mjmr.conditions import (
     matches,
 )
 from mjmr.errors import InvalidInputError, MjmrError, UnknownNameError
+from mjmr.parts import Part, PartChoice, Parts
 
 if TYPE_CHECKING:
     from mjmr.claims import Claim
@@ -81,6 +84,9 @@ class Study:
         verdicts: The committed ``verdicts.json``.
         source_packages: Packages whose source makes a result what it is; None means mjmr,
             controllers and the package the trial is in. With ``mjmr`` the models are counted too.
+        parts: Roles another class can take; if there are any, the trial is called with a third
+            argument, the :class:`mjmr.parts.Parts` of the run.
+        chosen: What takes a role in place of its default; see :meth:`choose`.
 
     Raises:
         InvalidInputError: The declaration contradicts itself.
@@ -101,6 +107,8 @@ class Study:
     prepare: Reference | None = None
     verdicts: Path | None = None
     source_packages: tuple[str, ...] | None = None
+    parts: tuple[Part, ...] = ()
+    chosen: tuple[PartChoice, ...] = ()
 
     def __post_init__(self):
         object.__setattr__(self, "parameters", tuple(self.parameters))
@@ -108,6 +116,7 @@ class Study:
         for kind, names in (
             ("parameter", [p.name for p in self.parameters]),
             ("size", [s.name for s in self.sizes]),
+            ("part", [p.role for p in self.parts]),
         ):
             if len(set(names)) < len(names):
                 raise InvalidInputError(f"study {self.name}: a {kind} is declared twice: {names}")
@@ -171,6 +180,29 @@ class Study:
             MjmrError: The reference leads nowhere.
         """
         return resolve(getattr(self, role))
+
+    def choose(self, choices: Sequence[PartChoice]) -> "Study":
+        """This study with other classes in some of its roles.
+
+        Raises:
+            UnknownNameError: A choice for a role that is not declared; lists those there are.
+        """
+        roles = [part.role for part in self.parts]
+        for choice in choices:
+            if choice.role not in roles:
+                raise UnknownNameError("part", choice.role, roles)
+        return dataclasses.replace(self, chosen=tuple(choices))
+
+    def bound_trial(self) -> Callable[..., Any]:
+        """The trial as ``(condition, seed) -> metrics``, with its parts bound to it.
+
+        Raises:
+            MjmrError: A reference leads nowhere.
+        """
+        function = self.resolve("trial")
+        if not self.parts:
+            return function
+        return functools.partial(function, parts=Parts(self.parts, self.chosen))
 
     def load_claims(self) -> "list[Claim]":
         """The claims.

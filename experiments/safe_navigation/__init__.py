@@ -8,6 +8,7 @@ from pathlib import Path
 
 from experiments.safe_navigation.sizes import FULL, QUICK, STANDARD
 from mjmr.conditions import Parameter
+from mjmr.parts import Part
 from mjmr.study import Study
 
 _HERE = "experiments.safe_navigation"
@@ -72,5 +73,12 @@ study = Study(
     world=f"{_HERE}.worlds:world",
     bench=f"{_HERE}.bench:bench",
     prepare=f"{_HERE}.trial:prepare",
+    parts=(
+        Part(
+            role="navigator",
+            doc="velocities of all robots from their positions, velocities and goals",
+            default="controllers.motion:Navigator",
+        ),
+    ),
     verdicts=Path(__file__).with_name("verdicts.json"),
 )

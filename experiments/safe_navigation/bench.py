@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from experiments.safe_navigation.trial import prepare, trial
+from experiments.safe_navigation.trial import prepare
 from mjmr.bench import conditions, interleave, spread
 
 
@@ -19,6 +19,7 @@ def bench() -> str:
 
 
 def _planning(study: Any) -> list[str]:
+    trial = study.bound_trial()
     figures: dict[str, list[float]] = {"mean": [], "p95": []}
 
     def job(search: bool) -> Callable[[], float]:
@@ -45,6 +46,7 @@ def _planning(study: Any) -> list[str]:
 
 
 def _real_time(study: Any) -> list[str]:
+    trial = study.bound_trial()
     cases = {
         "metric, A": {"scene": "A"},
         "metric, cross4": {"scene": "cross4"},
@@ -71,13 +73,14 @@ def _real_time(study: Any) -> list[str]:
 
 def _workers(study: Any) -> list[str]:
     from mjmr.executor import LocalExecutor
+    from mjmr.parts import Job
 
     trials = [(study.condition(scene="A", duration=20.0), seed) for seed in range(40)]
 
     def job(workers: int) -> Callable[[], float]:
         def run() -> float:
             done = []
-            for _ in LocalExecutor(workers).run(study.name, trials):
+            for _ in LocalExecutor(workers).run(Job(study.name), trials):
                 done.append(time.perf_counter())
             # from the first result on, so that starting processes does not count
             skip = 2 * workers

@@ -1,33 +1,29 @@
 """One trial: the paper's loop, top to bottom."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from controllers.motion import Navigator, NavigatorConfig
+from controllers.motion import NavigatorConfig
 from experiments.safe_navigation.pilot import FilterTracker, Pilot, RawTracker
 from experiments.safe_navigation.worlds import build
 from mjmr.kinematics import KinematicSimulation
 from mjmr.loop import TickedSimulation
 from mjmr.metrics import ContactMeter, OverlapMeter
-from mjmr.recording import Recording
+from mjmr.parts import Parts
 
 PERIOD = 1 / 60
 Metrics = dict[str, float | int]
 
 
-def trial(
-    condition: Mapping[str, Any],
-    seed: int,
-    record: Callable[[TickedSimulation, Callable[[], str]], Recording] | None = None,
-) -> Metrics:
+def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
     """Run one condition with one seed.
 
     Args:
         condition: See the study's parameters.
         seed: Of the trial.
-        record: Makes a recording of the simulation, given what its caption says; for films.
+        parts: The navigator.
 
     Returns:
         Metrics; lengths in mm, as tables show them.
@@ -53,10 +49,12 @@ def trial(
         fail_safe=condition["fail_safe"],
         motion=condition["motion"],
     )
-    navigator = Navigator(world.bounds, world.boxes, robots.n, config, simulation.rng("navigator"))
+    navigator = parts["navigator"](
+        world.bounds, world.boxes, robots.n, config, simulation.rng("navigator")
+    )
     pilot = Pilot(scene, navigator, tracker, condition["latency"], condition["predict"])
     motion = _Motion(simulation, robots) if condition["scene"] == "straight" else None
-    recording = record(simulation, lambda: _caption(meter)) if record else None
+    simulation.caption = lambda: _caption(meter)
 
     cycles = round(condition["duration"] / PERIOD)
     spent, sampled = np.zeros(cycles), 0
@@ -67,8 +65,8 @@ def trial(
         spent[k] = pilot.seconds
         robots.drive(command)
         sampled += int(navigator.sampled.sum())
-        if recording is not None:
-            recording.note(
+        if simulation.noted:
+            simulation.note(
                 goals=pilot.shuttle.goals, waypoints=navigator.waypoints, stops=pilot.stops
             )
 
@@ -151,4 +149,4 @@ def prepare() -> None:
     from experiments.safe_navigation import study
 
     for mode in ("metric", "physical"):
-        trial(study.condition(mode=mode, scene="A", latency=1, duration=0.05), 0)
+        study.bound_trial()(study.condition(mode=mode, scene="A", latency=1, duration=0.05), 0)

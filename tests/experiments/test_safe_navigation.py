@@ -10,9 +10,11 @@ import pytest
 from experiments.safe_navigation import study
 from experiments.safe_navigation import trial as module
 from experiments.safe_navigation.pilot import FilterTracker, RawTracker, Shuttle
-from experiments.safe_navigation.trial import trial
 from experiments.safe_navigation.worlds import build, scene
 from mjmr.errors import TruthError
+from mjmr.watch import watching
+
+trial = study.bound_trial()
 
 
 def run(seed=0, **values):
@@ -65,16 +67,13 @@ def test_a_controller_that_reads_the_truth_is_stopped(monkeypatch):
     monkeypatch.setattr(module, "Pilot", Peeking)
     simulations = []
 
-    def keep(simulation, caption):
-        simulations.append(simulation)
-
     def peek():
         simulation = simulations[-1]
         return simulation.truth.poses(simulation.world.groups[0])
 
     for mode in ("metric", "physical"):
-        with pytest.raises(TruthError):
-            trial(study.condition(mode=mode, duration=0.1), 0, keep)
+        with pytest.raises(TruthError), watching(simulations.append):
+            trial(study.condition(mode=mode, duration=0.1), 0)
 
 
 def test_every_scene_runs_in_every_mode_with_every_failure():
@@ -100,9 +99,10 @@ def test_nothing_is_compiled_after_prepare():
     """In a fresh process, since compiled signatures stay."""
     script = """
 from experiments.safe_navigation import study
-from experiments.safe_navigation.trial import prepare, trial
+from experiments.safe_navigation.trial import prepare
 from numba.core.dispatcher import Dispatcher
 import gc
+trial = study.bound_trial()
 prepare()
 def signatures():
     return {id(d): len(d.signatures) for d in gc.get_objects() if isinstance(d, Dispatcher)}
@@ -192,6 +192,7 @@ def test_failures_leave_the_others_safe(failure, fail_safe):
 @pytest.mark.slow
 def test_one_worker_and_two_give_identical_metrics():
     from mjmr.executor import LocalExecutor
+    from mjmr.parts import Job
 
     short = {"duration": 2.0, "sigma_mm": 3.0}
     conditions = [
@@ -202,7 +203,7 @@ def test_one_worker_and_two_give_identical_metrics():
     trials = [(condition, seed) for condition in conditions for seed in range(2)]
 
     def table(workers):
-        outcomes = LocalExecutor(workers).run(study.name, trials)
+        outcomes = LocalExecutor(workers).run(Job(study.name), trials)
         return {(str(o.condition), o.seed): json.dumps(o.metrics) for o in outcomes}
 
     one, two = table(1), table(2)

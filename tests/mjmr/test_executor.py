@@ -10,6 +10,7 @@ import pytest
 from mjmr.conditions import Condition
 from mjmr.errors import InvalidInputError
 from mjmr.executor import LocalExecutor, compute
+from mjmr.parts import Job
 from mjmr.registry import load_study
 from mjmr.store import encode
 from tests.processes import spawned
@@ -19,7 +20,7 @@ TOY = "tests.toy_study:study"
 
 def run(reference, workers=2, trials=None, **options):
     trials = load_study(reference).trials("quick") if trials is None else trials
-    return list(LocalExecutor(workers).run(reference, trials, **options))
+    return list(LocalExecutor(workers).run(Job(reference), trials, **options))
 
 
 def told(outcomes):
@@ -31,11 +32,11 @@ def test_one_worker_equals_two_equals_none():
     two = told(run(TOY, 2))
     assert len(two) == len(trials)
     assert told(run(TOY, 1)) == two
-    assert told(compute(TOY, *trial) for trial in trials) == two
+    assert told(compute(Job(TOY), *trial) for trial in trials) == two
 
 
 def test_wall_times_are_kept_apart():
-    outcome = compute(TOY, *load_study(TOY).trials("quick")[0])
+    outcome = compute(Job(TOY), *load_study(TOY).trials("quick")[0])
     assert set(outcome.wall) == {"wall_trial", "wall_toss"}
     assert not any(name.startswith("wall_") for name in outcome.metrics)
     assert outcome.wall["wall_trial"] > 0.0
@@ -77,14 +78,14 @@ def test_what_is_no_metric_fails_the_trial():
         ("_returns_list", "not iterable"),
         ("_wall_text", "wall time"),
     ):
-        outcome = compute(f"{__name__}:{name}", Condition({}), 0)
+        outcome = compute(Job(f"{__name__}:{name}"), Condition({}), 0)
         assert outcome.status == "failed"
         assert returned in outcome.error
 
 
 def test_workers_use_one_thread_and_leave_the_driver_alone(monkeypatch):
     monkeypatch.setenv("OMP_NUM_THREADS", "7")
-    (outcome,) = LocalExecutor(1).run("tests.toy_environment:study", [(Condition({}), 0)])
+    (outcome,) = LocalExecutor(1).run(Job("tests.toy_environment:study"), [(Condition({}), 0)])
     assert outcome.error == ""
     assert {v for n, v in outcome.metrics.items() if n.endswith("NUM_THREADS")} == {"1"}
     assert outcome.metrics["sigint"] is True
@@ -101,7 +102,7 @@ def test_stopping_gives_up_what_is_under_way(monkeypatch):
 
 
 def test_closing_the_iteration_ends_the_workers():
-    outcomes = LocalExecutor(2).run(TOY, load_study(TOY).trials("quick"))
+    outcomes = LocalExecutor(2).run(Job(TOY), load_study(TOY).trials("quick"))
     assert next(outcomes).status == "ok"
     outcomes.close()
     assert not spawned(psutil.Process())
@@ -109,10 +110,11 @@ def test_closing_the_iteration_ends_the_workers():
 
 _DRIVER = """
 from mjmr.executor import LocalExecutor
+from mjmr.parts import Job
 from mjmr.registry import load_study
 if __name__ == "__main__":
     study = "tests.toy_study:study"
-    for _ in LocalExecutor(2).run(study, load_study(study).trials("standard")):
+    for _ in LocalExecutor(2).run(Job(study), load_study(study).trials("standard")):
         pass
 """
 
