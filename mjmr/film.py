@@ -10,6 +10,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from mjmr.cart_servos import CartServos
 from mjmr.errors import InvalidInputError
 from mjmr.film_options import FilmOptions
 from mjmr.overlay import View, draw_notes, draw_text, draw_trails, palette
@@ -148,6 +149,7 @@ class _Panel:
             [self._model.joint(name).qposadr[0] + np.arange(7) for name, _ in world.movers],
             dtype=np.int64,
         ).reshape(-1, 7)
+        self._carts = CartServos(self._model, world)
         self._times, self._poses = recording.times, recording.poses
         self._movers, self._positions = recording.movers, recording.positions
         self._colours = palette(team.n)
@@ -165,6 +167,7 @@ class _Panel:
             for rows, drive in self._drives:
                 drive.place(data, poses[rows])
             data.qpos[self._mover_qpos] = self._movers[index]
+            self._carts.place(data, float(self._times[index]))
         mujoco.mj_kinematics(model, data)
         mujoco.mj_camlight(model, data)
         renderer, recording = self._renderer, self._recording

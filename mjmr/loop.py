@@ -47,6 +47,11 @@ class Truth:
         self._guard()
         return self._simulation.mover_poses()
 
+    def carts(self) -> Array:
+        """The carts as boxes, shape (k, 5): x, y, yaw, half-length, half-width [m, rad]."""
+        self._guard()
+        return self._simulation.cart_boxes()
+
     def _guard(self) -> None:
         if self._simulation.acting:
             raise TruthError(
@@ -240,6 +245,10 @@ class TickedSimulation(ABC):
     @abstractmethod
     def twists_of(self, group: "Group") -> Array:
         """True twists (n, 3), body frame, a new array; for sensors and :class:`Truth`."""
+
+    @abstractmethod
+    def cart_boxes(self) -> Array:
+        """Carts as boxes (k, 5), a new array; for sensors and :class:`Truth`."""
 
     @abstractmethod
     def mover_poses(self) -> Array:

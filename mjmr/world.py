@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mjmr.cart import Cart
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.group import Group
 
@@ -79,7 +80,7 @@ class World:
     Attributes:
         bounds: Inner faces of the wall (4,) [m].
         field: Marked playing field (4,) [m], or None.
-        props: Boxes and balls, in order of declaration.
+        props: Boxes, balls and carts, in order of declaration.
         groups: Robots, in order of declaration.
         simulation: The one that has the robots now.
     """
@@ -110,7 +111,7 @@ class World:
         if floor not in FLOORS:
             raise UnknownNameError("floor", floor, FLOORS)
         self.floor = floor
-        self.props: list[Box | Ball] = []
+        self.props: list[Box | Ball | Cart] = []
         self.groups: list[Group] = []
         self.simulation: Any = None
         self._edits: list[Callable[[Any], None]] = []
@@ -136,6 +137,12 @@ class World:
         ball = Ball(x=x, y=y, radius=0.02135, mass=0.046)
         self.props.append(ball)
         return ball
+
+    def add_cart(self, x: float, y: float, length: float, width: float, **options: Any) -> Cart:
+        """Put a box on a rail that goes to and fro; see :class:`mjmr.cart.Cart` for the options."""
+        cart = Cart(x=x, y=y, length=length, width=width, **options)
+        self.props.append(cart)
+        return cart
 
     def add_group(
         self, platform: "type[Platform] | Platform", poses: ArrayLike, **options: Any
@@ -177,11 +184,20 @@ class World:
     @property
     def movers(self) -> Sequence[tuple[str, Box | Ball]]:
         """Props that can be moved, with their body names in the built model."""
-        found = []
-        for i, prop in enumerate(self.props):
-            if isinstance(prop, Ball) or prop.mass is not None:
-                found.append((f"{type(prop).__name__.lower()}{i}", prop))
-        return found
+        return [
+            (name, prop)
+            for name, prop in self.named_props()
+            if isinstance(prop, Ball) or (isinstance(prop, Box) and prop.mass is not None)
+        ]
+
+    @property
+    def carts(self) -> Sequence[tuple[str, Cart]]:
+        """Boxes that go to and fro by themselves, with their names in the built model."""
+        return [(name, prop) for name, prop in self.named_props() if isinstance(prop, Cart)]
+
+    def named_props(self) -> Sequence[tuple[str, Box | Ball | Cart]]:
+        """Props with their names in the built model."""
+        return [(f"{type(p).__name__.lower()}{i}", p) for i, p in enumerate(self.props)]
 
     def spec(self) -> "mujoco.MjSpec":
         """Build the MjSpec of this world; each call builds a new one."""

@@ -5,6 +5,9 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
+from mjmr.cart import Cart
+from mjmr.cart_servos import CartServos, add_cart
+
 if TYPE_CHECKING:
     from mjmr.world import Ball, Box, World
 
@@ -33,8 +36,11 @@ def build_spec(world: "World") -> mujoco.MjSpec:
     _stripes(spec, world)
     if world.field is not None:
         _field_lines(spec, world.field)
-    for name, prop in _named_props(world):
-        _prop(spec, name, prop)
+    for name, prop in world.named_props():
+        if isinstance(prop, Cart):
+            add_cart(spec, name, prop)
+        else:
+            _prop(spec, name, prop)
     for group in world.groups:
         group.add_to(spec)
     spec.visual.quality.offsamples = 0
@@ -54,15 +60,12 @@ def export_xml(world: "World", timestep: float) -> str:
     data = mujoco.MjData(model)
     for group in world.groups:
         group.platform.bind(model, group.prefixes).place(data, group.start)
+    CartServos(model, world).place(data, 0.0)
     for k, joint in enumerate(spec.joints):
         joint.actfrcrange = model.jnt_actfrcrange[model.joint(joint.name).id if joint.name else k]
     spec.add_key(name="start", qpos=data.qpos, act=data.act)
     spec.compile()
     return spec.to_xml()
-
-
-def _named_props(world: "World"):
-    return [(f"{type(p).__name__.lower()}{i}", p) for i, p in enumerate(world.props)]
 
 
 def _materials(spec: mujoco.MjSpec, world: "World") -> None:
@@ -76,6 +79,7 @@ def _materials(spec: mujoco.MjSpec, world: "World") -> None:
     spec.add_material(name="wall", rgba=[0.82, 0.83, 0.85, 1], specular=0.1)
     spec.add_material(name="fixed_box", rgba=[0.55, 0.42, 0.30, 1], specular=0.05)
     spec.add_material(name="free_box", rgba=[0.78, 0.60, 0.32, 1], specular=0.05)
+    spec.add_material(name="cart", rgba=[0.80, 0.36, 0.20, 1], specular=0.05)
     spec.add_material(name="line", rgba=[0.95, 0.95, 0.95, 1], specular=0.0)
 
 
