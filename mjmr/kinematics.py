@@ -65,6 +65,10 @@ class KinematicSimulation(TickedSimulation):
             rows.append([prop.x, prop.y, z, np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2)])
         return np.array(rows, dtype=np.float64).reshape(-1, 7)
 
+    def visible_state(self) -> Array:
+        """Poses of the whole team (n, 3)."""
+        return self._pose.copy()
+
     def _begin_period(self) -> None:
         team, time, period = self.team, self.time, self.control_period
         ramps = [g.next_ramp(time, period) for g in team.groups]

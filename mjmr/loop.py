@@ -15,6 +15,8 @@ from mjmr.team import Team
 
 if TYPE_CHECKING:
     from mjmr.group import Group
+    from mjmr.sensors.base import Sensor
+    from mjmr.sensors.studio import Studio
     from mjmr.world import World
 
 Array = NDArray[np.float64]
@@ -103,6 +105,7 @@ class TickedSimulation(ABC):
         self.acting = False
         self._observers: list[Callable[[], None]] = []
         self._started = False
+        self._studio: Studio | None = None
 
     def _bind(self) -> None:
         """Take the groups and their sensors; called at the end of a subclass's __init__."""
@@ -111,12 +114,32 @@ class TickedSimulation(ABC):
             group.reset()
             for name, sensor in group.sensors.items():
                 sensor.bind(self, group, f"{group.name}/{name}")
-        self._sensors = [s for g in self.world.groups for s in g.sensors.values()]
+        for name, sensor in self.world.cameras.items():
+            sensor.bind(self, None, f"world/{name}")
+        self._sensors: list[Sensor] = [s for g in self.world.groups for s in g.sensors.values()]
+        self._sensors.extend(self.world.cameras.values())
 
     @property
     def time(self) -> float:
         """Simulated seconds since the start."""
         return self.step * self.timestep
+
+    @property
+    def studio(self) -> "Studio":
+        """Where this simulation's cameras take their pictures; made when first used."""
+        if self._studio is None:
+            from mjmr.sensors.studio import Studio
+
+            self._studio = Studio(self)
+        return self._studio
+
+    def close(self) -> None:
+        """Free the GL contexts of cameras; the next picture opens new ones.
+
+        A simulation nobody holds any more does so by itself, when Python's collector gets to it.
+        """
+        if self._studio is not None:
+            self._studio.close()
 
     def rng(self, name: str) -> np.random.Generator:
         """A fresh generator of the trial's stream called ``name``."""
@@ -209,6 +232,10 @@ class TickedSimulation(ABC):
     @abstractmethod
     def mover_poses(self) -> Array:
         """Poses (k, 7) of the props that can move."""
+
+    @abstractmethod
+    def visible_state(self) -> Any:
+        """What a picture of this instant is made from; copies. See :class:`Studio`."""
 
     @abstractmethod
     def _begin_period(self) -> None: ...

@@ -105,6 +105,11 @@ class Simulation(TickedSimulation):
         ids = self._mover_ids
         return np.concatenate([self.data.xpos[ids], self.data.xquat[ids]], axis=1)
 
+    def visible_state(self) -> tuple[Array, Array, Array]:
+        """Joint positions, and positions and quaternions of mocap bodies."""
+        data = self.data
+        return data.qpos.copy(), data.mocap_pos.copy(), data.mocap_quat.copy()
+
     def watch_steps(self, watcher: Callable[[], None]) -> None:
         """Call ``watcher`` after every physics step; for meters of contact, which are brief."""
         self._step_watchers.append(watcher)
