@@ -71,6 +71,10 @@ class KinematicSimulation(TickedSimulation):
         rows = [cart.box(cart.along(self.time)[0]) for _, cart in self.world.carts]
         return np.array(rows).reshape(-1, 5)
 
+    def visible_state(self) -> tuple[float, Array]:
+        """Time, which places the carts, and poses of the whole team (n, 3)."""
+        return self.time, self._pose.copy()
+
     def _begin_period(self) -> None:
         team, time, period = self.team, self.time, self.control_period
         ramps = [g.next_ramp(time, period) for g in team.groups]

@@ -117,6 +117,11 @@ class Simulation(TickedSimulation):
         """MuJoCo's ``qpos``, shape (nq,), a copy."""
         return self.data.qpos.copy()
 
+    def visible_state(self) -> tuple[Array, Array, Array]:
+        """Joint positions, and positions and quaternions of mocap bodies."""
+        data = self.data
+        return data.qpos.copy(), data.mocap_pos.copy(), data.mocap_quat.copy()
+
     def watch_steps(self, watcher: Callable[[], None]) -> None:
         """Call ``watcher`` after every physics step; for meters of contact, which are brief."""
         self._step_watchers.append(watcher)

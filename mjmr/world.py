@@ -19,8 +19,11 @@ if TYPE_CHECKING:
     import mujoco
 
     from mjmr.robots.platform import Platform
+    from mjmr.sensors.base import Sensor
+    from mjmr.sensors.camera import Camera
 
 FLOORS = ("carpet", "concrete")
+LIGHTINGS = ("even", "uneven")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,6 +85,7 @@ class World:
         field: Marked playing field (4,) [m], or None.
         props: Boxes, balls and carts, in order of declaration.
         groups: Robots, in order of declaration.
+        sensors: Cameras and other sensors that stand in the world, by name.
         simulation: The one that has the robots now.
     """
 
@@ -92,6 +96,7 @@ class World:
         field: ArrayLike | None = None,
         wall_height: float = 0.1,
         floor: str = "carpet",
+        lighting: str = "even",
     ):
         """Declare an empty world.
 
@@ -100,19 +105,24 @@ class World:
             field: Rectangle of a marked playing field, same form, or None.
             wall_height: [m].
             floor: One of ``FLOORS``; carpet carries field lines when there is a field.
+            lighting: One of ``LIGHTINGS``; uneven: a lamp near the lower left corner, which makes
+                that side of the floor about twice as bright as the other.
 
         Raises:
             InvalidInputError: Bounds without area.
-            UnknownNameError: Unknown floor.
+            UnknownNameError: Unknown floor or lighting.
         """
         self.bounds = _rectangle(bounds, "bounds")
         self.field = None if field is None else _rectangle(field, "field")
         self.wall_height = float(wall_height)
         if floor not in FLOORS:
             raise UnknownNameError("floor", floor, FLOORS)
-        self.floor = floor
+        if lighting not in LIGHTINGS:
+            raise UnknownNameError("lighting", lighting, LIGHTINGS)
+        self.floor, self.lighting = floor, lighting
         self.props: list[Box | Ball | Cart] = []
         self.groups: list[Group] = []
+        self.sensors: dict[str, Sensor] = {}
         self.simulation: Any = None
         self._edits: list[Callable[[Any], None]] = []
 
@@ -166,6 +176,53 @@ class World:
             raise InvalidInputError(f"there is a group named {group.name!r} already")
         self.groups.append(group)
         return group
+
+    def add_camera(
+        self,
+        camera: "Camera",
+        *,
+        position: ArrayLike,
+        look_at: ArrayLike | None = None,
+        quaternion: ArrayLike | None = None,
+        name: str = "camera",
+    ) -> "Camera":
+        """Stand a camera in the world; it is sampled like the robots' sensors.
+
+        Args:
+            camera: Not mounted elsewhere.
+            position: (3,) [m], world frame.
+            look_at: A point it looks at (3,) [m]; up in the image is up, or +y straight down.
+            quaternion: Its orientation (w, x, y, z) instead, MuJoCo's convention: it looks along
+                its -z, +y is up in the image.
+            name: Of the camera.
+
+        Returns:
+            The camera.
+
+        Raises:
+            InvalidInputError: The name is taken, or the camera or its pose cannot be used.
+        """
+        camera.stand(position, look_at, quaternion)
+        return self.mount(camera, name)
+
+    def mount(self, sensor: Any, name: str | None = None) -> Any:
+        """Let a sensor stand in the world; it is sampled like the robots' sensors.
+
+        Args:
+            sensor: Not mounted elsewhere.
+            name: Default: the sensor's own name.
+
+        Returns:
+            The sensor.
+
+        Raises:
+            InvalidInputError: The name is taken.
+        """
+        key = name or sensor.name
+        if key in self.sensors:
+            raise InvalidInputError(f"there is a sensor named {key!r} in this world already")
+        self.sensors[key] = sensor
+        return sensor
 
     def edit(self, change: "Callable[[mujoco.MjSpec], None]") -> None:
         """Register a change to the MjSpec, applied at the end of every build."""

@@ -43,10 +43,14 @@ def build_spec(world: "World") -> mujoco.MjSpec:
             _prop(spec, name, prop)
     for group in world.groups:
         group.add_to(spec)
+    for name, sensor in world.sensors.items():
+        sensor.add_to(spec, [""], name)
     spec.visual.quality.offsamples = 0
     spec.visual.global_.offwidth, spec.visual.global_.offheight = 1920, 1080
-    spec.visual.headlight.ambient = [0.35, 0.35, 0.35]
-    spec.visual.headlight.diffuse = [0.25, 0.25, 0.25]
+    # the headlight goes with the camera; where a lamp is to shade the scene it gives nothing
+    glow = 0.25 if world.lighting == "uneven" else 0.35
+    spec.visual.headlight.ambient = [glow] * 3
+    spec.visual.headlight.diffuse = [0.0 if world.lighting == "uneven" else 0.25] * 3
     spec.visual.headlight.specular = [0.0, 0.0, 0.0]
     spec.visual.map.znear = 0.01
     return spec
@@ -87,6 +91,20 @@ def _lights_and_overview(spec: mujoco.MjSpec, world: "World") -> None:
     low, high = world.bounds[:2], world.bounds[2:]
     centre, size = (low + high) / 2, high - low
     far = float(size.max())
+    if world.lighting == "uneven":
+        _lamp(spec, low + 0.15 * size, far)
+    else:
+        _sun(spec, centre, far)
+    # far enough to see the walls in a 5:4 picture, tilted 15 degrees off the vertical
+    half = max(size[1] / 2, size[0] / 2 / 1.25) * 1.16
+    distance = half / np.tan(np.radians(OVERVIEW_FOVY / 2))
+    tilt = np.radians(15.0)
+    pos = [centre[0], centre[1] - distance * np.sin(tilt), distance * np.cos(tilt)]
+    quat = [np.cos(tilt / 2), np.sin(tilt / 2), 0.0, 0.0]
+    spec.worldbody.add_camera(name=OVERVIEW, pos=pos, quat=quat, fovy=OVERVIEW_FOVY)
+
+
+def _sun(spec: mujoco.MjSpec, centre: np.ndarray, far: float) -> None:
     spec.worldbody.add_light(
         type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
         pos=[centre[0] - far / 2, centre[1] - far / 2, far],
@@ -95,13 +113,23 @@ def _lights_and_overview(spec: mujoco.MjSpec, world: "World") -> None:
         specular=[0.15, 0.15, 0.15],
         castshadow=True,
     )
-    # far enough to see the walls in a 5:4 picture, tilted 15 degrees off the vertical
-    half = max(size[1] / 2, size[0] / 2 / 1.25) * 1.16
-    distance = half / np.tan(np.radians(OVERVIEW_FOVY / 2))
-    tilt = np.radians(15.0)
-    pos = [centre[0], centre[1] - distance * np.sin(tilt), distance * np.cos(tilt)]
-    quat = [np.cos(tilt / 2), np.sin(tilt / 2), 0.0, 0.0]
-    spec.worldbody.add_camera(name=OVERVIEW, pos=pos, quat=quat, fovy=OVERVIEW_FOVY)
+
+
+def _lamp(spec: mujoco.MjSpec, at: np.ndarray, far: float) -> None:
+    height = 0.6 * far
+    spec.worldbody.add_light(
+        # wide open: a lamp that shines everywhere below; point lights are not drawn by MuJoCo's GL
+        type=mujoco.mjtLightType.mjLIGHT_SPOT,
+        pos=[*at, height],
+        dir=[0.0, 0.0, -1.0],
+        cutoff=90.0,
+        exponent=0.0,
+        diffuse=[0.95, 0.95, 0.95],
+        specular=[0.15, 0.15, 0.15],
+        # falls with the square of the distance, to a half at twice the height
+        attenuation=[0.67, 0.0, 0.33 / height**2],
+        castshadow=True,
+    )
 
 
 def _floor(spec: mujoco.MjSpec, world: "World") -> None:
