@@ -86,14 +86,20 @@ class ContactMeter:
 
     Attributes:
         robots: Time in contact summed over robot pairs [s].
+        outsiders: The same over pairs with an outsider, not counted in ``robots`` [s].
         obstacles: Time in contact summed over robots touching a wall, fixed box or cart [s].
         robot_impulse: Normal impulse summed over robot pairs [N s].
         obstacle_impulse: The same over robots and walls or boxes [N s].
         episodes: Robot-robot contacts begun.
     """
 
-    def __init__(self, simulation: "Simulation"):
-        """Args: simulation: What to watch."""
+    def __init__(self, simulation: "Simulation", outsiders: Sequence[int] = ()):
+        """Watch.
+
+        Args:
+            simulation: What to watch.
+            outsiders: Robots of the team, by index, whose pairs are counted apart.
+        """
         import mujoco
 
         self._data = simulation.data
@@ -109,7 +115,8 @@ class ContactMeter:
         carts = [model.geom(name).id for name, _ in simulation.world.carts]
         fixed[carts] = True
         self._fixed = fixed
-        self.robots = self.obstacles = 0.0
+        self._outsiders = frozenset(outsiders)
+        self.robots = self.outsiders = self.obstacles = 0.0
         self.robot_impulse = self.obstacle_impulse = 0.0
         self.episodes = 0
         self._touching: set[tuple[int, int]] = set()
@@ -132,7 +139,9 @@ class ContactMeter:
         if pair.any():
             low, high = np.minimum(first, second)[pair], np.maximum(first, second)[pair]
             touching = set(zip(low.tolist(), high.tolist(), strict=True))
-            self.robots += len(touching) * self._dt
+            apart = sum(not self._outsiders.isdisjoint(pair) for pair in touching)
+            self.outsiders += apart * self._dt
+            self.robots += (len(touching) - apart) * self._dt
             self.robot_impulse += self._normal_force(pair) * self._dt
             self.episodes += len(touching - self._touching)
         self._touching = touching
