@@ -122,7 +122,9 @@ class Sensor(ABC):
         copies, self._next_number, self.due_step = state
         self._samples = deque(_Sample(s.number, s.time, s.ready_step, s.state) for s in copies)
 
-    def add_to(self, spec: "mujoco.MjSpec", prefixes: Sequence[str], key: str) -> None:
+    def add_to(  # noqa: B027
+        self, spec: "mujoco.MjSpec", prefixes: Sequence[str], key: str
+    ) -> None:
         """Add what the sensor needs to a model under construction; by default nothing.
 
         Args:
