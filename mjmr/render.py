@@ -1,5 +1,14 @@
-"""Off-screen pictures of a model: one renderer with the looks mjmr uses."""
+"""Off-screen pictures of a model: one renderer with the looks mjmr uses.
 
+MuJoCo frees a context's objects by number in whichever context is current, so one that Python's
+collector frees while another is drawing spoils that one's picture. Here a renderer nobody holds any
+more is set aside and freed, made current first, before the next picture of its thread.
+"""
+
+import atexit
+import functools
+import threading
+import weakref
 from types import TracebackType
 from typing import Any
 
@@ -10,6 +19,10 @@ from numpy.typing import NDArray
 from mjmr.errors import GL_ADVICE, MissingGLError, UnknownNameError
 from mjmr.film_options import LOOKS
 from mjmr.geometry import Pinhole
+
+# renderers set aside, with the threads that may free them
+_forgotten: list[tuple[int, mujoco.Renderer]] = []
+_open: "weakref.WeakSet[Renderer]" = weakref.WeakSet()
 
 
 class Renderer:
@@ -40,10 +53,16 @@ class Renderer:
         if look == "draft":
             # in software half of the time went into the triangles of round shapes and the floor
             quality.numslices, quality.numstacks, quality.numquads = 20, 6, quads
+        _free_forgotten()
         try:
             self._renderer = mujoco.Renderer(model, height, width)
         except Exception as error:  # each GL backend raises its own kind
             raise MissingGLError(GL_ADVICE) from error
+        keep = (threading.get_ident(), self._renderer)
+        self._forget = weakref.finalize(self, _forgotten.append, keep)
+        self._forget.atexit = False
+        _open.add(self)
+        _close_at_exit()
         self.model, self.width, self.height = model, width, height
         self._fine = look == "fine"
         self._option = mujoco.MjvOption()
@@ -83,6 +102,7 @@ class Renderer:
         return np.where(seen[..., 1] == mujoco.mjtObj.mjOBJ_GEOM, seen[..., 0], -1).astype(np.int32)
 
     def _aim(self, data: mujoco.MjData, camera: Any) -> None:
+        _free_forgotten()
         self._renderer.update_scene(data, camera, scene_option=self._option)
         flags = self._renderer.scene.flags
         flags[mujoco.mjtRndFlag.mjRND_SHADOW] = self._fine
@@ -103,8 +123,9 @@ class Renderer:
         return Pinhole(position, rotation, float(focal), self.width, self.height)
 
     def close(self) -> None:
-        """Free the context."""
-        self._renderer.close()
+        """Free the context; closing again does nothing."""
+        if self._forget.detach():
+            _free(self._renderer)
 
     def __enter__(self) -> "Renderer":
         return self
@@ -116,3 +137,31 @@ class Renderer:
         trace: TracebackType | None,
     ) -> None:
         self.close()
+
+
+def _free(renderer: mujoco.Renderer) -> None:
+    context = renderer._gl_context  # pyright: ignore[reportAttributeAccessIssue]
+    if context:
+        context.make_current()
+    renderer.close()
+
+
+def _free_forgotten() -> None:
+    here = threading.get_ident()
+    for entry in [e for e in _forgotten if e[0] == here]:
+        _forgotten.remove(entry)
+        _free(entry[1])
+
+
+@functools.cache
+def _close_at_exit() -> None:
+    """Free what is left when the process ends: EGL complains about contexts that outlive it.
+
+    Called after the first context was opened, so that the hook runs before MuJoCo's own.
+    """
+
+    @atexit.register
+    def _() -> None:
+        for renderer in list(_open):
+            renderer.close()
+        _free_forgotten()

@@ -1,19 +1,23 @@
 """Team colours, dot patterns and digits drawn with primitives."""
 
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     import mujoco
 
+Rgb = tuple[float, float, float]
 Rgba = tuple[float, float, float, float]
 
+# hues of 51, 223, 2 and 93 degrees; the bits' are 321 and 180, the carpet's 134, the ball's 23
 TEAM_COLOURS: dict[str, Rgba] = {
     "yellow": (0.98, 0.85, 0.10, 1.0),
     "blue": (0.10, 0.35, 0.95, 1.0),
     "red": (0.90, 0.15, 0.12, 1.0),
-    "green": (0.15, 0.75, 0.25, 1.0),
+    "green": (0.45, 0.90, 0.08, 1.0),
 }
 _PINK: Rgba = (1.0, 0.25, 0.75, 1.0)
 _CYAN: Rgba = (0.10, 0.95, 0.95, 1.0)
@@ -27,10 +31,34 @@ _SEGMENTS = ("1110111", "0010010", "1011101", "1011011", "0111010",
              "1101011", "1101111", "1010010", "1111111", "1111011")  # fmt: skip
 
 
-def marker_colours(number: int) -> list[Rgba]:
-    """Colours of the four dots around the centre for robot ``number`` (repeats after 16)."""
-    bits = _PATTERNS[number % len(_PATTERNS)]
-    return [_PINK if bits >> k & 1 else _CYAN for k in range(4)]
+@dataclass(frozen=True, kw_only=True)
+class DotPattern:
+    """Dots on top of a robot: one in the team's colour, around it one for each bit of its code.
+
+    Attributes:
+        dots: Middles of the bits' dots (k, 2) [m], robot frame; the team's dot is at the origin.
+        dot_radius: [m].
+        centre_radius: Of the team's dot [m].
+        height: Of the dots' upper faces above the floor [m].
+        bit_colours: RGB of a 0 and of a 1, 0 to 1.
+        team_colours: RGB by team.
+        codes: Code of each number; bit k belongs to dot k.
+    """
+
+    dots: NDArray[np.float64]
+    dot_radius: float
+    centre_radius: float
+    height: float
+    bit_colours: tuple[Rgb, Rgb] = (_CYAN[:3], _PINK[:3])
+    team_colours: dict[str, Rgb] = field(
+        default_factory=lambda: {name: rgba[:3] for name, rgba in TEAM_COLOURS.items()}
+    )
+    codes: tuple[int, ...] = _PATTERNS
+
+    def colours(self, number: int) -> list[Rgba]:
+        """Colours of the bits' dots of robot ``number``; repeats after the last code."""
+        code = self.codes[number % len(self.codes)]
+        return [(*self.bit_colours[code >> k & 1], 1.0) for k in range(len(self.dots))]
 
 
 def draw_digit(site: "mujoco.MjsSite", body: "mujoco.MjsBody", digit: int, height: float) -> None:

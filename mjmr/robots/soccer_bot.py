@@ -7,7 +7,7 @@ import numpy as np
 
 from mjmr.assets import model_path
 from mjmr.errors import UnknownNameError
-from mjmr.robots.markings import TEAM_COLOURS, draw_digit, marker_colours
+from mjmr.robots.markings import TEAM_COLOURS, DotPattern, draw_digit
 from mjmr.robots.platform import Drive, Platform
 
 if TYPE_CHECKING:
@@ -16,16 +16,25 @@ if TYPE_CHECKING:
     from mjmr.sensors.base import Sensor
 
 DRIVES = ("planar",)
+# front left, back left, back right, front right: the league's layout keeps the front open
+_DOTS = np.array([[0.035, 0.0548], [-0.0548, 0.035], [-0.0548, -0.035], [0.035, -0.0548]])
+_DOTS.setflags(write=False)
+_HALF_DOT = 0.0006  # m, half the thickness of a dot
 
 
 class SoccerBot(Platform):
-    """Holonomic soccer robot; commands are body-frame twists (forward, left, anticlockwise)."""
+    """Holonomic soccer robot; commands are body-frame twists (forward, left, anticlockwise).
+
+    Attributes:
+        pattern: The dots on its top, for overhead cameras.
+    """
 
     name = "soccer_bot"
     radius = 0.090
     height = 0.150
     max_twist = (3.0, 12.0)
     braking = 6.0
+    pattern = DotPattern(dots=_DOTS, dot_radius=0.020, centre_radius=0.025, height=0.1538)
 
     def __init__(self, drive: str = "planar"):
         """Args: drive: ``"planar"``: two slides and a hinge with force-limited velocity servos.
@@ -48,14 +57,15 @@ class SoccerBot(Platform):
         spec.material("team").rgba = rgba
         base = spec.body("base")
         top = np.array(spec.site("top").pos)
-        dots = [(0.0, 0.0, 0.025, rgba)]
-        for (x, y), colour in zip(_DOTS, marker_colours(number), strict=True):
-            dots.append((x, y, 0.020, colour))
+        pattern = self.pattern
+        dots = [(0.0, 0.0, pattern.centre_radius, rgba)]
+        for (x, y), colour in zip(pattern.dots, pattern.colours(number), strict=True):
+            dots.append((x, y, pattern.dot_radius, colour))
         for x, y, radius, colour in dots:
             base.add_geom(
                 type=mujoco.mjtGeom.mjGEOM_CYLINDER,
-                pos=top + [x, y, 0.0006],
-                size=[radius, 0.0006, 0],
+                pos=top + [x, y, _HALF_DOT],
+                size=[radius, _HALF_DOT, 0],
                 rgba=colour,
                 contype=0,
                 conaffinity=0,
@@ -76,7 +86,3 @@ class SoccerBot(Platform):
         from mjmr.sensors.localizer import Localizer
 
         return {"localizer": Localizer(rate=60.0)}
-
-
-# front left, back left, back right, front right: the league's layout keeps the front open
-_DOTS = ((0.035, 0.0548), (-0.0548, 0.035), (-0.0548, -0.035), (0.035, -0.0548))

@@ -162,9 +162,9 @@ class Camera(Sensor):
 
     def add_to(self, spec: "mujoco.MjSpec", prefixes: Sequence[str], key: str) -> None:
         """Add a camera to the world or each robot, or check that the model has the one named."""
-        self._names = [f"{prefix}{self._at or key}" for prefix in prefixes]
         taken = [c.name for c in spec.cameras]
-        for prefix, name in zip(prefixes, self._names, strict=True):
+        for prefix in prefixes:
+            name = f"{prefix}{self._at or key}"
             if self._at:
                 if name not in taken:
                     own = [c.removeprefix(prefix) for c in taken if c.startswith(prefix)]
@@ -183,7 +183,14 @@ class Camera(Sensor):
             )
 
     def prepare(self, sequence: np.random.SeedSequence, group: Any) -> None:
-        """Set up the noise streams."""
+        """Set up the noise streams, and remember what the model calls the cameras."""
+        assert self._simulation is not None
+        if self._standing and group is not None:
+            raise InvalidInputError("this camera stands in the world; mount another one on robots")
+        mounted: Any = self._simulation.world.cameras if group is None else group.sensors
+        key = next(key for key, sensor in mounted.items() if sensor is self)
+        prefixes = [""] if group is None else group.prefixes
+        self._names = [f"{prefix}{self._at or key}" for prefix in prefixes]
         noise, loss = sequence.spawn(2)
         self._count = 1 if group is None else group.n
         self._losses = SampleNoise(loss, (self._count,), "uniform")

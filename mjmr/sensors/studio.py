@@ -1,8 +1,5 @@
 """Studio: where the cameras of one simulation take their pictures, late and out of its way."""
 
-import atexit
-import functools
-import weakref
 from typing import TYPE_CHECKING, Any
 
 import mujoco
@@ -18,7 +15,6 @@ if TYPE_CHECKING:
 
 # pieces a lamp's light is sampled at along a wall, a box or the floor
 _LAMP_QUADS = 8
-_STUDIOS: "weakref.WeakSet[Studio]" = weakref.WeakSet()
 
 
 class Studio:
@@ -51,7 +47,6 @@ class Studio:
         self._labels = _labels(model, self.label_names, team.n)
         self._quads = _LAMP_QUADS if world.lighting == "uneven" else 1
         self._renderers: dict[tuple[int, int], Renderer] = {}
-        _STUDIOS.add(self)
 
     def show(self, state: Any) -> None:
         """Put the scene as it was when ``simulation.visible_state()`` returned ``state``."""
@@ -91,21 +86,7 @@ class Studio:
         size = (width, height)
         if size not in self._renderers:
             self._renderers[size] = Renderer(self.model, width, height, quads=self._quads)
-            _close_at_exit()
         return self._renderers[size]
-
-
-@functools.cache
-def _close_at_exit() -> None:
-    """Close every studio when the process ends: EGL complains about contexts that outlive it.
-
-    Called after the first context was opened, so that the hook runs before MuJoCo's own.
-    """
-
-    @atexit.register
-    def _() -> None:
-        for studio in list(_STUDIOS):
-            studio.close()
 
 
 def _labels(model: Any, names: tuple[str, ...], robots: int) -> NDArray[np.int32]:

@@ -43,3 +43,38 @@ def test_transforming_there_and_back_is_nothing(a, point):
 def test_yaw_of_a_quaternion_about_z(a):
     q = [np.cos(a / 2), 0, 0, np.sin(a / 2)]
     assert abs(float(g.angle_difference(g.quaternion_yaw(q), a))) < 1e-9
+
+
+def test_pixels_go_to_the_plane_and_back():
+    camera = g.Pinhole(
+        np.array([0.5, -3.0, 3.5]), g.look_at((0.5, -3, 3.5), (0, 0, 0)), 900, 800, 600
+    )
+    pixels = np.random.default_rng(0).uniform((0, 0), (800, 600), (50, 2))
+    ground = camera.on_plane(pixels, 0.15)
+    np.testing.assert_allclose(camera.on_floor(ground, z=0.15), pixels, atol=1e-9)
+    np.testing.assert_allclose(camera.project([0, 0, 0]), camera.centre, atol=1e-9)
+    # 1 m to the right and 2 m up in front of the camera, in its own frame
+    ahead = camera.T_world_camera @ [1.0, -2.0, 10.0, 1.0]
+    np.testing.assert_allclose(camera.project(ahead[:3]), camera.centre + [90, -180], atol=1e-9)
+    behind = camera.position - camera.rotation[:, 2]
+    assert np.isnan(camera.project(behind)).all()
+    level = g.Pinhole(np.array([0.0, 0.0, 1.0]), g.look_at((0, 0, 1), (1, 0, 1)), 100.0, 100, 100)
+    assert np.isnan(level.on_plane([50.0, 20.0], 0.0)).all(), "the sky never meets the floor"
+
+
+def test_look_at_keeps_up_up():
+    np.testing.assert_allclose(
+        g.look_at((0, 0, 4), (0, 0, 0)), np.diag([1.0, -1.0, -1.0]), atol=1e-15
+    )
+    right, down, forward = g.look_at((0, 0, 1), (5, 0, 1)).T
+    np.testing.assert_allclose(
+        [right, down, forward], [[0, -1, 0], [0, 0, -1], [1, 0, 0]], atol=1e-15
+    )
+
+
+@given(st.lists(st.floats(-1, 1), min_size=4, max_size=4).filter(lambda q: np.linalg.norm(q) > 0.1))
+def test_rotation_of_a_quaternion_is_scipys(q):
+    from scipy.spatial.transform import Rotation
+
+    expected = Rotation.from_quat([*q[1:], q[0]]).as_matrix()
+    np.testing.assert_allclose(g.rotation_matrix(q), expected, atol=1e-12)
