@@ -35,9 +35,10 @@ study = Study(
             "A: three boxes, parallel lanes; cross4, cross10: no boxes, mirrored goals, a planner "
             "blind to robots; stranger10: cross10 with one robot that goes its way at 1 m/s and "
             "minds nobody; carts: three boxes that go to and fro, parallel lanes; overlap: two "
-            "pairs start inside each other; straight: one robot",
+            "pairs start inside each other; straight: one robot; gallery: no run, images of ten "
+            "robots at random poses, 10 for each second of duration",
             "A",
-            ("A", "cross4", "cross10", "stranger10", "carts", "overlap", "straight"),
+            ("A", "cross4", "cross10", "stranger10", "carts", "overlap", "straight", "gallery"),
         ),
         Parameter("search", "whether the velocity-space safety search is on", True),
         Parameter("sigma_mm", "deviation of reported positions along x and y", 0.0, unit="mm"),
@@ -69,6 +70,28 @@ study = Study(
             "foresee",
             "whether a stranger is expected to keep its velocity for 0.35 s; else to obey like all",
             True,
+        ),
+        Parameter(
+            "drive",
+            "planar: servos on slides, wheel contact abstract; omni: four omni-wheels, contact "
+            "alone (mode physical)",
+            "planar",
+            ("planar", "omni"),
+        ),
+        Parameter(
+            "limits",
+            "what the navigator plans with: the paper's acceleration and braking, or those "
+            "measured of this drive",
+            "paper",
+            ("paper", "measured"),
+        ),
+        Parameter(
+            "sensing",
+            "report: Gaussian, 60 Hz, at once; vision: rendered overhead images, 30 Hz, two "
+            "cycles late (sigma_mm is then what the filter expects); late-report: Gaussian, with "
+            "vision's rate and latency (both need mode physical)",
+            "report",
+            ("report", "late-report", "vision"),
         ),
         Parameter("dt_ms", "largest physics timestep; it divides the cycle", 5.0, unit="ms"),
         Parameter("duration", "of a run, simulated", 30.0, unit="s"),

@@ -4,16 +4,16 @@ The curves of the paper's Figures 8 and 9 survive in words only; every bound mar
 fixed before the runs that decide it.
 """
 
-from collections.abc import Callable
-
 import numpy as np
 
+from experiments.safe_navigation.claims_beyond import beyond, maximum
 from mjmr import statistics
 from mjmr.claims import Bound, Claim, Evidence, Table
 
 _EXACT = 1e-9  # mm s
 _ALL = ("quick", "standard", "full")
 _LARGE = ("standard", "full")
+_PLANAR = {"mode": "physical", "drive": "planar", "sensing": "report", "latency": 0}
 _SIGMAS = (1.0, 2.0, 3.0, 4.0, 5.0)
 
 
@@ -30,6 +30,7 @@ def claims() -> list[Claim]:
         *_price(),
         _bisection(),
         *_physical(),
+        *beyond(),
         *_timing(),
     ]
 
@@ -168,19 +169,11 @@ def _exactly_zero() -> list[Claim]:
             needs={"mode": "metric", "scene": scene, "sigma_mm": 0.0, "margin_mm": 0.0,
                    "search": True, "failure": failure, "fail_safe": fail_safe, "latency": 0,
                    "motion": "paper"},
-            evaluate=_maximum("overlap_mm_s"),
+            evaluate=maximum("overlap_mm_s"),
         )
         for scene in ("A", "cross4", "cross10")
         for suffix, (failure, fail_safe, quick, text) in _CASES.items()
     ]  # fmt: skip
-
-
-def _maximum(metric: str) -> Callable[[Table], Evidence]:
-    def evaluate(table: Table) -> Evidence:
-        values = table.values(metric)
-        return Evidence(float(values.max()), n=len(values))
-
-    return evaluate
 
 
 def _off_is_flat() -> Claim:
@@ -260,7 +253,7 @@ def _overlap_separates() -> Claim:
         unit="s",
         sizes=_ALL,
         needs={"mode": "metric", "scene": "overlap"},
-        evaluate=_maximum("last_overlap_s"),
+        evaluate=maximum("last_overlap_s"),
     )
 
 
@@ -275,7 +268,7 @@ def _latency() -> list[Claim]:
             unit="mm s",
             sizes=_ALL,
             needs={**needs, "predict": True},
-            evaluate=_maximum("overlap_mm_s"),
+            evaluate=maximum("overlap_mm_s"),
         ),
         Claim(
             id="latency-unpredicted",
@@ -338,8 +331,8 @@ def _physical() -> list[Claim]:
             bound=Bound("<=", 0.0),
             unit="s",
             sizes=_LARGE if scene == "cross10" else _ALL,
-            needs={"mode": "physical", "scene": scene, "search": True, "margin_mm": 1.0},
-            evaluate=_maximum("contact_s"),
+            needs={**_PLANAR, "scene": scene, "search": True, "margin_mm": 1.0},
+            evaluate=maximum("contact_s"),
         )
         for scene in ("A", "cross4", "cross10")
     ]
@@ -351,7 +344,7 @@ def _physical() -> list[Claim]:
             bound=Bound(">", 1.0),
             unit="s",
             sizes=_ALL,
-            needs={"mode": "physical", "scene": "cross4", "search": False},
+            needs={**_PLANAR, "scene": "cross4", "search": False},
             evaluate=lambda table: Evidence.of(statistics.mean(table.values("contact_s"))),
         )
     )
@@ -369,8 +362,8 @@ def _physical() -> list[Claim]:
                 bound=bound,
                 unit=unit,
                 sizes=_ALL,
-                needs={"mode": "physical", "scene": "straight"},
-                evaluate=_maximum(metric),
+                needs={**_PLANAR, "scene": "straight"},
+                evaluate=maximum(metric),
             )
         )
     return found

@@ -74,13 +74,11 @@ def _stranger() -> list[Claim]:
         ),
         Claim(
             id="stranger-spares-the-others",
-            text="not in the paper: a stranger does not undo the safety of the nine among themselves",
+            text="not in the paper: a stranger does not undo the safety of the others",
             how="pairs without the stranger, depth x time; ratio of means foreseen / search off",
             bound=Bound("<=", 0.05),
             needs=needs,
-            evaluate=_ratio(
-                "overlap_mm_s", foreseen, {"search": False, "foresee": True}
-            ),
+            evaluate=_ratio("overlap_mm_s", foreseen, {"search": False, "foresee": True}),
         ),
     ]
 

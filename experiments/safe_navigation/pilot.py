@@ -14,8 +14,8 @@ from controllers.motion import (
     body_twist,
     forward_predict,
 )
+from experiments.safe_navigation.scenes import Scene
 from experiments.safe_navigation.trackers import FilterTracker, RawTracker
-from experiments.safe_navigation.worlds import Scene
 
 Array = NDArray[np.float64]
 ARRIVED = 0.05  # [m]

@@ -11,6 +11,9 @@ from mjmr.study import Size
 _CROSSES = ("cross4", "cross10")
 _SIGMAS = (0.0, 1.0, 2.0, 3.0, 4.0, 5.0)
 _MARGINS = (1.0, 2.0, 3.0, 4.0)
+OMNI_MARGIN = 10.0  # mm
+VISION_MARGIN = 4.0  # mm
+VISION_SIGMA = 2.0  # mm: above the error of the vision, measured on images of other seeds
 
 QUICK = Size(
     "quick",

@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 
 from controllers.estimation import PoseFilterConfig
-from controllers.motion import NavigatorConfig
+from controllers.motion import Limits, NavigatorConfig
 from experiments.safe_navigation.pilot import Pilot
+from experiments.safe_navigation.sensing import YAW_NOISE
 from experiments.safe_navigation.trackers import CartTracker, FilterTracker, RawTracker
 from experiments.safe_navigation.worlds import build
 from mjmr.kinematics import KinematicSimulation
@@ -19,6 +20,9 @@ PERIOD = 1 / 60
 # [s]: a stranger is foreseen as long as braking takes; a cart, longer, since it comes to robots at
 # rest, which must have got out of its way
 FORESIGHT, CART_FORESIGHT = 0.35, 0.7
+# [m] between body and boxes in plans: omni-wheels follow less exactly
+BOX_CLEARANCE = {"planar": 0.015, "omni": 0.040}
+GALLERY_RATE = 10.0  # images a simulated second of the gallery
 Metrics = dict[str, float | int]
 
 
@@ -33,7 +37,13 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
     Returns:
         Metrics; lengths in mm, as tables show them.
     """
-    world, robots, scene = build(condition, seed)
+    if condition["scene"] == "gallery":
+        from experiments.safe_navigation.vision import vision_accuracy
+
+        return vision_accuracy(round(condition["duration"] * GALLERY_RATE), seed)
+    world, robots, scene, eyes = build(condition, seed)
+    platform = robots.platform
+    sigma = condition["sigma_mm"] / 1000.0
     if condition["mode"] == "physical":
         from mjmr.simulation import Simulation
 
@@ -41,23 +51,20 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
             world, seed=seed, control_period=PERIOD, dt_max=condition["dt_ms"] / 1000.0
         )
         meter: Any = ContactMeter(simulation, scene.strangers)
-        noises = PoseFilterConfig(
-            position_noise=max(condition["sigma_mm"] / 1000.0, 1e-4),
-            yaw_noise=1e-3,
-            speed_noise=0.01,
-        )
-        tracker: Any = FilterTracker(scene.starts, PERIOD, noises)
+        tracker: Any = FilterTracker(scene.starts, PERIOD, filter_noises(condition))
     else:
         simulation = KinematicSimulation(world, seed=seed, control_period=PERIOD)
         meter = OverlapMeter(simulation, outsiders=scene.strangers)
         tracker = RawTracker(scene.starts, PERIOD)
     config = NavigatorConfig(
-        radius=robots.platform.radius,
+        radius=platform.radius,
+        limits=_limits(platform) if condition["limits"] == "measured" else Limits(),
         period=PERIOD,
         margin=condition["margin_mm"] / 1000.0,
         search=condition["search"],
         samples=scene.samples,
         plan_around_robots=scene.sees_robots,
+        box_clearance=BOX_CLEARANCE[condition["drive"]],
         fail_safe=condition["fail_safe"],
         motion=condition["motion"],
         strangers=scene.strangers if condition["foresee"] else (),
@@ -65,7 +72,7 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
     )
     carts = None
     if scene.carts:
-        carts = CartTracker(world, PERIOD, condition["sigma_mm"] / 1000.0, FORESIGHT)
+        carts = CartTracker(world, PERIOD, sigma, FORESIGHT)
     boxes = carts.boxes if carts else world.boxes
     navigator = parts["navigator"](
         world.bounds, boxes, robots.n, config, simulation.rng("navigator")
@@ -79,7 +86,7 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
     cycles = round(condition["duration"] / PERIOD)
     spent, sampled = np.zeros(cycles), 0
     for k, now in enumerate(simulation.ticks(condition["duration"])):
-        report, sampled_at = robots.localizer.read(), robots.localizer.sampled_at
+        report, sampled_at = eyes.read()
         hearing = robots.acknowledged & ~robots.stopping(now)
         if carts:
             carts.update()
@@ -102,6 +109,27 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
         "wall_step_mean_us": float(each.mean()),
         "wall_step_p95_us": float(np.percentile(each, 95)),
     }
+
+
+def _limits(platform: Any) -> Limits:
+    """What the platform was measured to be able to do."""
+    measured = platform.limits
+    return Limits(
+        max_speed=measured.max_speed,
+        acceleration=measured.acceleration,
+        deceleration=measured.deceleration,
+    )
+
+
+def filter_noises(condition: Mapping[str, Any]) -> PoseFilterConfig:
+    """What the filter expects of reports and of bodies."""
+    late = condition["sensing"] != "report"
+    slips = condition["drive"] == "omni"
+    return PoseFilterConfig(
+        position_noise=max(condition["sigma_mm"] / 1000.0, 1e-4),
+        yaw_noise=YAW_NOISE if late else 1e-3,
+        speed_noise=0.05 if slips else 0.01,
+    )
 
 
 def _read(meter: Any) -> Metrics:

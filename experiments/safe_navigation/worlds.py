@@ -1,107 +1,46 @@
-"""The scenes: an F180 field with boxes, starts and goals.
-
-The paper's field is 4.9 x 3.8 m with a 0.30 m border; obstacle shapes and goals are only in its
-figures, so these are ours.
-"""
+"""The worlds: the field with a scene's boxes, carts and robots, and what the pilot sees with."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from experiments.safe_navigation.scenes import Scene, scene
+from experiments.safe_navigation.sensing import Eyes, make_eyes
+from mjmr.errors import InvalidInputError
 from mjmr.faults import Fault
 from mjmr.group import Group
 from mjmr.randomness import Streams
 from mjmr.robots.soccer_bot import SoccerBot
 from mjmr.sensors.cart_report import CartReport
-from mjmr.sensors.localizer import Localizer
 from mjmr.world import World
 
-REACH = 2.1  # goals lie at x = +-REACH [m]
-_LANES = (1.2, 0.4, -0.4, -1.2)
-_LOSS = 0.05
 _SPREAD = 0.02  # [m]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Scene:
-    """Where robots start and shuttle.
-
-    Attributes:
-        starts: (n, 2) [m].
-        far: First goals, (n, 2) [m].
-        near: Second goals, (n, 2) [m]; then the first again, and so on.
-        boxes: x, y, length, width [m].
-        sees_robots: Whether the planner treats other robots as obstacles.
-        samples: Accelerations the search draws.
-        strangers: Robots that do not take part: each goes straight for its goals at 1 m/s.
-        carts: x, y, yaw, length, width, travel [m, rad], speed [m/s].
-    """
-
-    starts: NDArray[np.float64]
-    far: NDArray[np.float64]
-    near: NDArray[np.float64]
-    boxes: tuple[tuple[float, float, float, float], ...] = ()
-    sees_robots: bool = True
-    samples: int = 50
-    strangers: tuple[int, ...] = ()
-    carts: tuple[tuple[float, ...], ...] = ()
-
-
-def scene(name: str) -> Scene:
-    """The scene called ``name``; see the study's parameter."""
-    if name == "A":
-        boxes = ((0.0, 0.8, 0.8, 1.0), (0.0, -0.8, 0.8, 1.0), (1.2, 0.0, 0.6, 0.6))
-        lanes = np.array(_LANES)
-        return Scene(
-            starts=_at(-REACH, lanes), far=_at(REACH, lanes), near=_at(-REACH, lanes), boxes=boxes
-        )
-    if name == "straight":
-        return Scene(starts=_at(-REACH, [0.0]), far=_at(REACH, [0.0]), near=_at(-REACH, [0.0]))
-    if name == "carts":
-        # two that close and open the way in turn, and one that goes along it
-        carts = (
-            (-0.7, 0.9, np.pi / 2, 0.5, 0.3, 1.2, 0.3),
-            (0.7, -0.9, np.pi / 2, 0.5, 0.3, 1.2, 0.3),
-            (0.0, 0.0, 0.0, 0.4, 0.3, 1.6, 0.3),
-        )
-        lanes = np.array(_LANES)
-        return Scene(
-            starts=_at(-REACH, lanes), far=_at(REACH, lanes), near=_at(-REACH, lanes), carts=carts
-        )
-    ten = name in ("cross10", "stranger10")
-    lanes = np.linspace(-1.8, 1.8, 10) if ten else np.array(_LANES)
-    cross = Scene(
-        starts=_at(-REACH, lanes),
-        far=_at(REACH, -lanes),
-        near=_at(-REACH, lanes),
-        sees_robots=False,
-        samples=100 if ten else 50,
-        strangers=(4,) if name == "stranger10" else (),
-    )
-    if name == "overlap":
-        starts = np.array([[-1.0, 0.5], [-0.88, 0.5], [0.0, -0.8], [0.08, -0.74]])
-        return Scene(starts=starts, far=cross.far, near=cross.near, sees_robots=False)
-    return cross
-
-
-def _at(x: float, ys: Any) -> NDArray[np.float64]:
-    return np.array([[x, y] for y in ys])
-
-
-def build(condition: Mapping[str, Any], seed: int) -> tuple[World, Group, Scene]:
-    """World, robots and scene of one trial.
+def build(condition: Mapping[str, Any], seed: int) -> tuple[World, Group, Scene, Eyes]:
+    """World, robots, scene and sensing of one trial.
 
     Starts on the field are displaced by up to 20 mm along x and y, drawn from the seed: with exact
     reports and no search nothing else differs from run to run.
+
+    Raises:
+        InvalidInputError: A drive or a sensing that needs bodies, without them.
     """
+    if condition["mode"] == "metric":
+        for name, without in (("drive", "planar"), ("sensing", "report")):
+            if condition[name] != without:
+                raise InvalidInputError(
+                    f"{name}={condition[name]} needs mode=physical; mode=metric takes "
+                    f"{name}={without}"
+                )
+    sigma = condition["sigma_mm"] / 1000.0
     place = scene(condition["scene"])
     starts = place.starts
     if condition["scene"] not in ("overlap", "straight"):
         starts = starts + Streams(seed).generator("starts").uniform(-_SPREAD, _SPREAD, starts.shape)
-    world = World.rectangle(4.9, 3.8, border=0.30)
+    lighting = "uneven" if condition["sensing"] == "vision" else "even"
+    world = World.rectangle(4.9, 3.8, border=0.30, lighting=lighting)
     for x, y, length, width in place.boxes:
         world.add_box(x, y, length, width)
     for k, (x, y, yaw, length, width, travel, speed) in enumerate(place.carts):
@@ -110,23 +49,20 @@ def build(condition: Mapping[str, Any], seed: int) -> tuple[World, Group, Scene]
             start=float(Streams(seed).generator(f"cart {k}").uniform()),
         )  # fmt: skip
     if place.carts:
-        world.mount(CartReport(rate=60.0, position_noise=condition["sigma_mm"] / 1000.0))
-    poses = np.column_stack([starts, np.zeros(len(starts))])
-    robots = world.add_group(SoccerBot, poses, command_latency=condition["latency"])
-    lossy = condition["failure"] == "reports-lost"
-    robots.mount(
-        Localizer(
-            rate=60.0,
-            position_noise=condition["sigma_mm"] / 1000.0,
-            loss=_LOSS if lossy else 0.0,
-        )
+        world.mount(CartReport(rate=60.0, position_noise=sigma))
+    robots = world.add_group(
+        SoccerBot(condition["drive"]),
+        np.column_stack([starts, np.zeros(len(starts))]),
+        command_latency=condition["latency"],
     )
+    lossy = condition["failure"] == "reports-lost"
+    eyes = make_eyes(condition["sensing"], world, robots, sigma, lossy)
     start, victim = condition["duration"] / 3, min(1, robots.n - 1)
     if condition["failure"] in ("dead", "stopped"):
         robots.faults.add(Fault(kind=condition["failure"], robot=victim, start=start))
     elif condition["failure"] == "commands-lost":
         robots.faults.add(Fault(kind="commands-lost", robot=victim, start=start, end=2 * start))
-    return world, robots, place
+    return world, robots, place, eyes
 
 
 def world(condition: Mapping[str, Any]) -> World:

@@ -187,7 +187,7 @@ class Camera(Sensor):
         assert self._simulation is not None
         if self._standing and group is not None:
             raise InvalidInputError("this camera stands in the world; mount another one on robots")
-        mounted: Any = self._simulation.world.cameras if group is None else group.sensors
+        mounted: Any = self._simulation.world.sensors if group is None else group.sensors
         key = next(key for key, sensor in mounted.items() if sensor is self)
         prefixes = [""] if group is None else group.prefixes
         self._names = [f"{prefix}{self._at or key}" for prefix in prefixes]

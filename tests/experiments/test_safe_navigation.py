@@ -11,8 +11,9 @@ from controllers.estimation import PoseFilterConfig
 from experiments.safe_navigation import study
 from experiments.safe_navigation import trial as module
 from experiments.safe_navigation.pilot import Shuttle
+from experiments.safe_navigation.scenes import scene
 from experiments.safe_navigation.trackers import FilterTracker, RawTracker
-from experiments.safe_navigation.worlds import build, scene
+from experiments.safe_navigation.worlds import build
 from mjmr.errors import TruthError
 from mjmr.watch import watching
 
