@@ -198,6 +198,7 @@ class Group:
             robot = self.platform.model(self.first_number + i, self.team)
             frame = spec.worldbody.add_frame()
             spec.attach(robot, prefix=f"{self.names[i]}/", frame=frame)
+        self.platform.finish(spec, self.prefixes)
 
     @property
     def prefixes(self) -> list[str]:
