@@ -59,9 +59,12 @@ class OmniDrive:
         )
         self._act = model.actuator_actadr[self._servo]
         treads = [[model.geom(f"{p}tread{k}").id for k in range(WHEELS)] for p in prefixes]
-        self.wheel_speeds = _wheel_speeds(model, [j.id for j in wheels[0]], treads[0])
         apart = _without_collisions(model)
         self._height = _rest_height(apart, self._qpos[0, 2], self._qvel[0, 2])
+        # MuJoCo lets a contact act half as deep as the shapes overlap
+        self.wheel_speeds = _wheel_speeds(
+            model, [j.id for j in wheels[0]], treads[0], self._height / 2.0
+        )
         mass, inertia = self._inertia(apart)
         # least torques that give a force and moment on the body; a servo of gain k gives the
         # torque t when its set point is t / k ahead
@@ -110,7 +113,7 @@ class OmniDrive:
         data = mujoco.MjData(model)
         mujoco.mj_forward(model, data)
         full = np.zeros((model.nv, model.nv))
-        mujoco.mj_fullM(model, full, data.qM)
+        mujoco.mj_fullM(model, data, full)
         motion = np.zeros((model.nv, 3))
         motion[self._qvel[0, [0, 1, 5]], [0, 1, 2]] = 1.0
         mass = full[self._qvel[0, 0], self._qvel[0, 0]]
@@ -170,8 +173,17 @@ def _twists(qpos, qvel, free, velocity):
     return twists
 
 
-def _wheel_speeds(model: "mujoco.MjModel", joints: Sequence[int], treads: Sequence[int]) -> Array:
-    """Wheel speeds (k, 3) per unit of twist, from where the model's wheels are and point."""
+def _wheel_speeds(
+    model: "mujoco.MjModel", joints: Sequence[int], treads: Sequence[int], sink: float
+) -> Array:
+    """Wheel speeds (k, 3) per unit of twist, from where the model's wheels are and point.
+
+    Args:
+        model: The compiled model.
+        joints: Of the wheels.
+        treads: Geoms that touch the floor.
+        sink: What contact takes off the treads' radius [m], below zero.
+    """
     import mujoco
 
     rows = []
@@ -180,7 +192,7 @@ def _wheel_speeds(model: "mujoco.MjModel", joints: Sequence[int], treads: Sequen
         axle = np.empty(3)
         mujoco.mju_rotVecQuat(axle, model.jnt_axis[joint], model.body_quat[body])
         # speed of the wheel's lowest point relative to its hub, at 1 rad/s
-        rolling = np.cross(axle, [0.0, 0.0, -model.geom_size[tread, 0]])
+        rolling = np.cross(axle, [0.0, 0.0, -model.geom_size[tread, 0] - sink])
         radius = np.linalg.norm(rolling)
         x, y = model.body_pos[body, :2]
         along = rolling / radius

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from mjmr.sensors.base import Sensor
 
 DRIVES = ("planar", "omni")
-OMNI_LIMITS = DriveLimits(max_speed=2.0, acceleration=2.0, deceleration=3.0)
+OMNI_LIMITS = DriveLimits(max_speed=2.0, acceleration=2.5, deceleration=3.0)
 
 
 class SoccerBot(Platform):
