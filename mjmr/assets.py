@@ -13,15 +13,21 @@ def asset_folder() -> Path:
     return packed if packed.is_dir() else _HERE.parent / "assets"
 
 
-def model_path(robot: str) -> Path:
+def model_path(robot: str, variant: str = "") -> Path:
     """Path of a robot's MJCF file.
+
+    Args:
+        robot: Its folder's name.
+        variant: Of the model, for robots that have several: ``<robot>_<variant>.xml``.
 
     Raises:
         UnknownNameError: No such robot; lists those there are.
     """
-    path = asset_folder() / robot / f"{robot}.xml"
+    name = f"{robot}_{variant}" if variant else robot
+    path = asset_folder() / robot / f"{name}.xml"
     if not path.is_file():
-        raise UnknownNameError(
-            "robot model", robot, sorted(p.parent.name for p in asset_folder().glob("*/*.xml"))
+        models = (
+            p.stem for p in asset_folder().glob("*/*.xml") if p.stem.startswith(p.parent.name)
         )
+        raise UnknownNameError("robot model", name, sorted(models))
     return path

@@ -200,6 +200,7 @@ class Group:
             spec.attach(robot, prefix=f"{self.names[i]}/", frame=frame)
         for key, sensor in self.sensors.items():
             sensor.add_to(spec, self.prefixes, key)
+        self.platform.finish(spec, self.prefixes)
 
     @property
     def prefixes(self) -> list[str]:

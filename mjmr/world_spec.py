@@ -7,6 +7,7 @@ import numpy as np
 
 from mjmr.cart import Cart
 from mjmr.cart_servos import CartServos, add_cart
+from mjmr.robots.platform import FLOOR
 
 if TYPE_CHECKING:
     from mjmr.world import Ball, Box, World
@@ -136,7 +137,7 @@ def _floor(spec: mujoco.MjSpec, world: "World") -> None:
     low, high = world.bounds[:2], world.bounds[2:]
     half = (high - low) / 2 + 5.0
     spec.worldbody.add_geom(
-        name="floor",
+        name=FLOOR,
         type=mujoco.mjtGeom.mjGEOM_PLANE,
         pos=[*((low + high) / 2), 0],
         size=[half[0], half[1], 0.1],

@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -13,6 +14,22 @@ if TYPE_CHECKING:
     from mjmr.sensors.base import Sensor
 
 Array = NDArray[np.float64]
+FLOOR = "floor"  # name of every world's floor geom
+
+
+@dataclass(frozen=True, kw_only=True)
+class DriveLimits:
+    """What a drive follows in every direction of travel; what a planner may plan with.
+
+    Attributes:
+        max_speed: [m/s].
+        acceleration: Bound while speed grows [m/s^2].
+        deceleration: Bound while speed falls [m/s^2].
+    """
+
+    max_speed: float
+    acceleration: float
+    deceleration: float
 
 
 class Drive(Protocol):
@@ -44,6 +61,7 @@ class Platform(ABC):
         height: Of the same cylinder [m].
         max_twist: Largest speed in the plane [m/s] and yaw rate [rad/s] that a command can ask for.
         braking: Deceleration of the robot's own emergency stop [m/s^2].
+        limits: What its drive follows; measured, see the platform.
     """
 
     name: str
@@ -51,10 +69,19 @@ class Platform(ABC):
     height: float
     max_twist: tuple[float, float]
     braking: float
+    limits: DriveLimits
 
     @abstractmethod
     def model(self, number: int, team: str) -> "mujoco.MjSpec":
         """Model of one robot, marked with its number and its team's colour."""
+
+    def finish(self, spec: "mujoco.MjSpec", prefixes: Sequence[str]) -> None:  # noqa: B027
+        """Add what needs both the robots and the world, once all of a group are attached.
+
+        Called while the world is built, when the floor (geom ``FLOOR``) and the robots under
+        ``prefixes`` are in ``spec``. Does nothing unless a platform has something to add, such as
+        contact pairs of wheels and floor.
+        """
 
     @abstractmethod
     def bind(self, model: "mujoco.MjModel", prefixes: Sequence[str]) -> Drive:

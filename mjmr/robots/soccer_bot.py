@@ -8,18 +8,19 @@ import numpy as np
 from mjmr.assets import model_path
 from mjmr.errors import UnknownNameError
 from mjmr.robots.markings import TEAM_COLOURS, DotPattern, draw_digit
-from mjmr.robots.platform import Drive, Platform
+from mjmr.robots.platform import Drive, DriveLimits, Platform
 
 if TYPE_CHECKING:
     import mujoco
 
     from mjmr.sensors.base import Sensor
 
-DRIVES = ("planar",)
 # front left, back left, back right, front right: the league's layout keeps the front open
 _DOTS = np.array([[0.035, 0.0548], [-0.0548, 0.035], [-0.0548, -0.035], [0.035, -0.0548]])
 _DOTS.setflags(write=False)
 _HALF_DOT = 0.0006  # m, half the thickness of a dot
+DRIVES = ("planar", "omni")
+OMNI_LIMITS = DriveLimits(max_speed=2.0, acceleration=2.5, deceleration=3.0)
 
 
 class SoccerBot(Platform):
@@ -35,9 +36,14 @@ class SoccerBot(Platform):
     max_twist = (3.0, 12.0)
     braking = 6.0
     pattern = DotPattern(dots=_DOTS, dot_radius=0.020, centre_radius=0.025, height=0.1538)
+    limits = DriveLimits(max_speed=2.0, acceleration=3.0, deceleration=6.0)
 
     def __init__(self, drive: str = "planar"):
-        """Args: drive: ``"planar"``: two slides and a hinge with force-limited velocity servos.
+        """Choose the drive.
+
+        Args:
+            drive: ``"planar"``: two slides and a hinge with force-limited velocity servos.
+                ``"omni"``: a free body on four omni-wheels, moved by their contact with the floor.
 
         Raises:
             UnknownNameError: Unknown drive.
@@ -45,12 +51,16 @@ class SoccerBot(Platform):
         if drive not in DRIVES:
             raise UnknownNameError("drive of SoccerBot", drive, DRIVES)
         self.drive_name = drive
+        if drive == "omni":
+            self.limits = OMNI_LIMITS
+            self.braking = OMNI_LIMITS.deceleration
 
     def model(self, number: int, team: str) -> "mujoco.MjSpec":
         """Model of one robot with its team's ring, its dot pattern and its number on the back."""
         import mujoco
 
-        spec = mujoco.MjSpec.from_file(str(model_path(self.name)))
+        variant = "" if self.drive_name == "planar" else self.drive_name
+        spec = mujoco.MjSpec.from_file(str(model_path(self.name, variant)))
         for key in list(spec.keys):
             spec.delete(key)
         rgba = TEAM_COLOURS[team]
@@ -75,8 +85,19 @@ class SoccerBot(Platform):
         draw_digit(spec.site("back"), base, number % 10, height=0.05)
         return spec
 
+    def finish(self, spec: "mujoco.MjSpec", prefixes: Sequence[str]) -> None:
+        """Let omni-wheels touch the floor."""
+        if self.drive_name == "omni":
+            from mjmr.robots.omni import roll_on_floor
+
+            roll_on_floor(spec, prefixes)
+
     def bind(self, model: "mujoco.MjModel", prefixes: Sequence[str]) -> Drive:
         """Drive of the robots attached under ``prefixes``."""
+        if self.drive_name == "omni":
+            from mjmr.robots.omni import OmniDrive
+
+            return OmniDrive(model, prefixes)
         from mjmr.robots.planar import PlanarDrive
 
         return PlanarDrive(model, prefixes)
