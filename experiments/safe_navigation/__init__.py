@@ -8,7 +8,7 @@ from pathlib import Path
 
 from experiments.safe_navigation.sizes import FULL, QUICK, STANDARD
 from mjmr.conditions import Parameter
-from mjmr.parts import Part
+from mjmr.parts import Method, Part
 from mjmr.study import Study
 
 _HERE = "experiments.safe_navigation"
@@ -78,6 +78,19 @@ study = Study(
             role="navigator",
             doc="velocities of all robots from their positions, velocities and goals",
             default="controllers.motion:Navigator",
+            constructor=("bounds", "boxes", "n", "config", "rng"),
+            methods=(
+                Method(
+                    name="step",
+                    arguments=("position", "velocity", "goals", "active"),
+                    returns=("n", 2),
+                    unit="m/s, world frame",
+                ),
+            ),
+            optional=(
+                "waypoints (n, 2) [m], world frame: drawn in films; the goals if there are none",
+                "sampled (n,) bool: robots whose wish was overruled; none if absent",
+            ),
         ),
     ),
     verdicts=Path(__file__).with_name("verdicts.json"),

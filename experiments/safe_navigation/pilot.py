@@ -7,7 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controllers.estimation import PoseFilter, PoseFilterConfig
-from controllers.motion import Navigator, body_twist, forward_predict, world_velocity
+from controllers.motion import (
+    Navigator,
+    NavigatorConfig,
+    body_twist,
+    forward_predict,
+    world_velocity,
+)
 from experiments.safe_navigation.worlds import Scene
 
 Array = NDArray[np.float64]
@@ -123,6 +129,7 @@ class Pilot:
         self,
         scene: Scene,
         navigator: Navigator,
+        config: NavigatorConfig,
         tracker: RawTracker | FilterTracker,
         latency: int,
         predict: bool,
@@ -131,13 +138,15 @@ class Pilot:
 
         Args:
             scene: Starts and goals.
-            navigator: The navigator.
+            navigator: The navigator; of it only ``step`` is called.
+            config: What the navigator was given; its period and limits count here.
             tracker: Turns reports into positions and velocities.
             latency: Cycles from a command to its execution.
             predict: Whether to plan for the state in which a command will take effect.
         """
         n = len(scene.starts)
         self.shuttle, self.navigator = Shuttle(scene), navigator
+        self._config = config
         self._tracker, self._predict = tracker, predict
         self._pending: deque[Array] = deque([np.zeros((n, 2))] * latency)
         self._cycle = (scene.starts, np.zeros((n, 2)), np.zeros((n, 2)))
@@ -159,7 +168,7 @@ class Pilot:
         self.shuttle.update(position)
         if self._predict and self._pending:
             position, velocity = forward_predict(
-                position, velocity, np.stack(self._pending), self.navigator.config.period
+                position, velocity, np.stack(self._pending), self._config.period
             )
         start = time.perf_counter()
         planar = self.navigator.step(position, velocity, self.shuttle.goals, active)
@@ -174,7 +183,7 @@ class Pilot:
     def stops(self) -> Array:
         """Where the last commands followed by braking end, (n, 2) [m], world frame; for films."""
         position, velocity, command = self._cycle
-        config = self.navigator.config
+        config = self._config
         speed = np.hypot(command[:, 0], command[:, 1])[:, None]
         braking = command * speed / (2.0 * config.limits.deceleration)
         return position + 0.5 * (velocity + command) * config.period + braking

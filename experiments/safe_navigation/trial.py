@@ -52,7 +52,7 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
     navigator = parts["navigator"](
         world.bounds, world.boxes, robots.n, config, simulation.rng("navigator")
     )
-    pilot = Pilot(scene, navigator, tracker, condition["latency"], condition["predict"])
+    pilot = Pilot(scene, navigator, config, tracker, condition["latency"], condition["predict"])
     motion = _Motion(simulation, robots) if condition["scene"] == "straight" else None
     simulation.caption = lambda: _caption(meter)
 
@@ -64,11 +64,11 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
         command = pilot.step(report, robots.executed, hearing)
         spent[k] = pilot.seconds
         robots.drive(command)
-        sampled += int(navigator.sampled.sum())
+        sampled += int(np.count_nonzero(getattr(navigator, "sampled", False)))
         if simulation.noted:
-            simulation.note(
-                goals=pilot.shuttle.goals, waypoints=navigator.waypoints, stops=pilot.stops
-            )
+            goals = pilot.shuttle.goals
+            waypoints = getattr(navigator, "waypoints", goals)
+            simulation.note(goals=goals, waypoints=waypoints, stops=pilot.stops)
 
     each = 1e6 * spent / robots.n
     return {
