@@ -59,8 +59,9 @@ def _accepts(function: Any, arguments: Sequence[str]) -> bool:
 
 
 def _signature(function: Any) -> str:
-    names = inspect.signature(function).parameters.values()
-    return f"({', '.join(str(p.replace(annotation=p.empty)) for p in names)})"
+    found = inspect.signature(function)
+    bare = [p.replace(annotation=p.empty) for p in found.parameters.values()]
+    return str(found.replace(parameters=bare, return_annotation=found.empty))
 
 
 class Guard:
