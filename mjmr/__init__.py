@@ -30,6 +30,7 @@ def _choose_gl() -> None:
 _choose_gl()
 
 _WHERE = {
+    "Camera": "mjmr.sensors.camera",
     "Film": "mjmr.film",
     "Fault": "mjmr.faults",
     "Group": "mjmr.group",

@@ -10,9 +10,10 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from mjmr.cart_servos import CartServos
 from mjmr.errors import InvalidInputError
 from mjmr.film_options import FilmOptions
-from mjmr.overlay import View, draw_notes, draw_text, draw_trails, palette
+from mjmr.overlay import draw_notes, draw_text, draw_trails, palette
 from mjmr.recording import Recording
 from mjmr.render import Renderer
 from mjmr.video import VideoWriter
@@ -148,6 +149,7 @@ class _Panel:
             [self._model.joint(name).qposadr[0] + np.arange(7) for name, _ in world.movers],
             dtype=np.int64,
         ).reshape(-1, 7)
+        self._carts = CartServos(self._model, world)
         self._times, self._poses = recording.times, recording.poses
         self._movers, self._positions = recording.movers, recording.positions
         self._colours = palette(team.n)
@@ -165,15 +167,16 @@ class _Panel:
             for rows, drive in self._drives:
                 drive.place(data, poses[rows])
             data.qpos[self._mover_qpos] = self._movers[index]
+            self._carts.place(data, float(self._times[index]))
         mujoco.mj_kinematics(model, data)
         mujoco.mj_camlight(model, data)
         renderer, recording = self._renderer, self._recording
         image = renderer.picture(data, self._camera(index)).copy()
-        view = View(*renderer.view(), renderer.width, renderer.height)
+        view = renderer.view()
         back = max(0, index - round(_TRAIL / recording.period))
         draw_trails(image, view, self._poses[back : index + 1 : 3, :, :2], self._colours)
         draw_notes(image, view, poses, recording.team.radii, recording.notes(index), self._colours)
-        heads = view.ground(poses[:, :2], z=0.16)
+        heads = view.on_floor(poses[:, :2], z=0.16)
         for i, colour in enumerate(self._colours):
             draw_text(image, str(i), (heads[i, 0] + 14, heads[i, 1] - 10), 0.45, colour)
         draw_text(image, self._label, (14, 26), 0.6)

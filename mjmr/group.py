@@ -198,6 +198,8 @@ class Group:
             robot = self.platform.model(self.first_number + i, self.team)
             frame = spec.worldbody.add_frame()
             spec.attach(robot, prefix=f"{self.names[i]}/", frame=frame)
+        for key, sensor in self.sensors.items():
+            sensor.add_to(spec, self.prefixes, key)
 
     @property
     def prefixes(self) -> list[str]:

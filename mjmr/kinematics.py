@@ -21,7 +21,8 @@ Array = NDArray[np.float64]
 class KinematicSimulation(TickedSimulation):
     """Every robot's twist ramps linearly, in its body frame, to its command in one period.
 
-    Bodies pass through each other, walls and boxes; free props stay where they are.
+    Bodies pass through each other, walls and boxes; free props stay where they are, carts go their
+    way exactly.
     """
 
     def __init__(
@@ -64,6 +65,15 @@ class KinematicSimulation(TickedSimulation):
             z = getattr(prop, "radius", 0.0) or getattr(prop, "height", 0.0) / 2
             rows.append([prop.x, prop.y, z, np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2)])
         return np.array(rows, dtype=np.float64).reshape(-1, 7)
+
+    def cart_boxes(self) -> Array:
+        """Carts as boxes (k, 5)."""
+        rows = [cart.box(cart.along(self.time)[0]) for _, cart in self.world.carts]
+        return np.array(rows).reshape(-1, 5)
+
+    def visible_state(self) -> tuple[float, Array]:
+        """Time, which places the carts, and poses of the whole team (n, 3)."""
+        return self.time, self._pose.copy()
 
     def _begin_period(self) -> None:
         team, time, period = self.team, self.time, self.control_period

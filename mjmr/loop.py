@@ -16,6 +16,8 @@ from mjmr.watch import announce
 
 if TYPE_CHECKING:
     from mjmr.group import Group
+    from mjmr.sensors.base import Sensor
+    from mjmr.sensors.studio import Studio
     from mjmr.world import World
 
 Array = NDArray[np.float64]
@@ -46,6 +48,11 @@ class Truth:
         """True poses of the props that can move, shape (k, 7): position [m], quaternion (wxyz)."""
         self._guard()
         return self._simulation.mover_poses()
+
+    def carts(self) -> Array:
+        """The carts as boxes, shape (k, 5): x, y, yaw, half-length, half-width [m, rad]."""
+        self._guard()
+        return self._simulation.cart_boxes()
 
     def _guard(self) -> None:
         if self._simulation.acting:
@@ -111,6 +118,7 @@ class TickedSimulation(ABC):
         self.caption: Callable[[], str] = str
         self._observers: list[Callable[[], None]] = []
         self._started = False
+        self._studio: Studio | None = None
 
     def _bind(self) -> None:
         """Take the groups and their sensors; called at the end of a subclass's __init__."""
@@ -119,7 +127,10 @@ class TickedSimulation(ABC):
             group.reset()
             for name, sensor in group.sensors.items():
                 sensor.bind(self, group, f"{group.name}/{name}")
-        self._sensors = [s for g in self.world.groups for s in g.sensors.values()]
+        for name, sensor in self.world.sensors.items():
+            sensor.bind(self, None, f"world/{name}")
+        self._sensors: list[Sensor] = [s for g in self.world.groups for s in g.sensors.values()]
+        self._sensors.extend(self.world.sensors.values())
         announce(self)
 
     def note(self, **arrays: ArrayLike) -> None:
@@ -152,6 +163,23 @@ class TickedSimulation(ABC):
     def time(self) -> float:
         """Simulated seconds since the start."""
         return self.step * self.timestep
+
+    @property
+    def studio(self) -> "Studio":
+        """Where this simulation's cameras take their pictures; made when first used."""
+        if self._studio is None:
+            from mjmr.sensors.studio import Studio
+
+            self._studio = Studio(self)
+        return self._studio
+
+    def close(self) -> None:
+        """Free the GL contexts of cameras; the next picture opens new ones.
+
+        A simulation nobody holds any more does so by itself, when Python's collector gets to it.
+        """
+        if self._studio is not None:
+            self._studio.close()
 
     def rng(self, name: str) -> np.random.Generator:
         """A fresh generator of the trial's stream called ``name``."""
@@ -242,12 +270,20 @@ class TickedSimulation(ABC):
         """True twists (n, 3), body frame, a new array; for sensors and :class:`Truth`."""
 
     @abstractmethod
+    def cart_boxes(self) -> Array:
+        """Carts as boxes (k, 5), a new array; for sensors and :class:`Truth`."""
+
+    @abstractmethod
     def mover_poses(self) -> Array:
         """Poses (k, 7) of the props that can move."""
 
     def full_positions(self) -> Array | None:
         """Every coordinate of the physics (nq,), a copy; None if there is none but the poses."""
         return None
+
+    @abstractmethod
+    def visible_state(self) -> Any:
+        """What a picture of this instant is made from; copies. See :class:`Studio`."""
 
     @abstractmethod
     def _begin_period(self) -> None: ...

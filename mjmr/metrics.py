@@ -1,5 +1,6 @@
 """Meters: what happened between bodies, from truth; never seen by a controller."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,20 +25,32 @@ class OverlapMeter:
 
     Attributes:
         robots: Over robot pairs [m s].
-        obstacles: Over robots and boxes or walls [m s].
-        deepest: Deepest overlap of a pair seen [m].
+        outsiders: Over pairs with an outsider, not counted in ``robots`` [m s].
+        obstacles: Over robots and boxes, carts or walls [m s].
+        deepest: Deepest overlap of a pair seen, outsiders apart [m].
         last_overlap: Last instant at which a pair overlapped [s]; NaN if none did.
     """
 
-    def __init__(self, simulation: "KinematicSimulation", samples: int = 8):
-        """Args: simulation: What to watch. samples: Instants a control period."""
+    def __init__(
+        self, simulation: "KinematicSimulation", samples: int = 8, outsiders: Sequence[int] = ()
+    ):
+        """Watch.
+
+        Args:
+            simulation: What to watch.
+            samples: Instants a control period.
+            outsiders: Robots of the team, by index, whose pairs are counted apart.
+        """
         self._simulation, self._samples = simulation, samples
         team = simulation.team
         self._radii = team.radii
+        self._outside = _mask(team.n, outsiders)
         self._boxes, self._bounds = simulation.world.boxes, simulation.world.bounds
-        self.robots = self.obstacles = self.deepest = 0.0
+        self._carts = bool(simulation.world.carts)
+        self.robots = self.outsiders = self.obstacles = self.deepest = 0.0
         self.last_overlap = np.nan
         self._previous: tuple[Array, Array] | None = None
+        self._before = self._boxes
         simulation.observe(self._measure)
 
     def _measure(self) -> None:
@@ -45,17 +58,27 @@ class OverlapMeter:
         team, truth = simulation.team, simulation.truth
         pose = team.stack([truth.poses(g) for g in team.groups])
         twist = team.stack([truth.twists(g) for g in team.groups])
+        boxes = self._boxes
+        if self._carts:
+            boxes = np.concatenate([boxes, truth.carts()])
         if self._previous is not None:
-            pairs, depth, fixed = overlap(
-                *self._previous, twist, self._radii, self._boxes, self._bounds,
-                simulation.control_period, self._samples,
+            pairs, depth, apart, fixed = overlap(
+                *self._previous, twist, self._radii, self._outside, self._before, boxes,
+                self._bounds, simulation.control_period, self._samples,
             )  # fmt: skip
             self.obstacles += fixed
+            self.outsiders += apart
             if pairs > 0.0:
                 self.robots += pairs
                 self.deepest = max(self.deepest, depth)
                 self.last_overlap = simulation.time
-        self._previous = pose, twist
+        self._previous, self._before = (pose, twist), boxes
+
+
+def _mask(n: int, indices: Sequence[int]) -> NDArray[np.bool_]:
+    mask = np.zeros(n, dtype=bool)
+    mask[list(indices)] = True
+    return mask
 
 
 class ContactMeter:
@@ -63,14 +86,20 @@ class ContactMeter:
 
     Attributes:
         robots: Time in contact summed over robot pairs [s].
-        obstacles: Time in contact summed over robots touching a wall or fixed box [s].
+        outsiders: The same over pairs with an outsider, not counted in ``robots`` [s].
+        obstacles: Time in contact summed over robots touching a wall, fixed box or cart [s].
         robot_impulse: Normal impulse summed over robot pairs [N s].
         obstacle_impulse: The same over robots and walls or boxes [N s].
         episodes: Robot-robot contacts begun.
     """
 
-    def __init__(self, simulation: "Simulation"):
-        """Args: simulation: What to watch."""
+    def __init__(self, simulation: "Simulation", outsiders: Sequence[int] = ()):
+        """Watch.
+
+        Args:
+            simulation: What to watch.
+            outsiders: Robots of the team, by index, whose pairs are counted apart.
+        """
         import mujoco
 
         self._data = simulation.data
@@ -83,8 +112,11 @@ class ContactMeter:
                     robots[body] = i
         self._robot = robots[model.geom_bodyid]
         fixed = (model.geom_bodyid == 0) & (model.geom_type != mujoco.mjtGeom.mjGEOM_PLANE)
+        carts = [model.geom(name).id for name, _ in simulation.world.carts]
+        fixed[carts] = True
         self._fixed = fixed
-        self.robots = self.obstacles = 0.0
+        self._outsiders = frozenset(outsiders)
+        self.robots = self.outsiders = self.obstacles = 0.0
         self.robot_impulse = self.obstacle_impulse = 0.0
         self.episodes = 0
         self._touching: set[tuple[int, int]] = set()
@@ -107,7 +139,9 @@ class ContactMeter:
         if pair.any():
             low, high = np.minimum(first, second)[pair], np.maximum(first, second)[pair]
             touching = set(zip(low.tolist(), high.tolist(), strict=True))
-            self.robots += len(touching) * self._dt
+            apart = sum(not self._outsiders.isdisjoint(pair) for pair in touching)
+            self.outsiders += apart * self._dt
+            self.robots += (len(touching) - apart) * self._dt
             self.robot_impulse += self._normal_force(pair) * self._dt
             self.episodes += len(touching - self._touching)
         self._touching = touching

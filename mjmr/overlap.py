@@ -8,7 +8,7 @@ from mjmr.jit import njit
 
 
 @njit
-def overlap(pose, start, end, radii, boxes, bounds, period, samples):
+def overlap(pose, start, end, radii, outside, boxes, moved, bounds, period, samples):
     """Depth times time, of disc pairs and of discs and fixed things, over one ramp of twists.
 
     Args:
@@ -16,13 +16,16 @@ def overlap(pose, start, end, radii, boxes, bounds, period, samples):
         start: Twists at its start, (n, 3), body frame.
         end: Twists at its end, (n, 3), body frame.
         radii: (n,) [m].
-        boxes: (k, 5): x, y, yaw, half length, half width.
+        outside: (n,) bool, robots whose pairs are counted apart.
+        boxes: (k, 5): x, y, yaw, half length, half width, at the ramp's start.
+        moved: (k, 5), the same at its end; boxes go straight in between.
         bounds: (4,): xmin, ymin, xmax, ymax [m].
         period: Of the ramp [s].
         samples: Instants at which depths are taken.
 
     Returns:
-        (pairs [m s], deepest pair [m], fixed things [m s]). Turning inside the ramp is neglected:
+        (pairs [m s], deepest pair [m], pairs with an outside robot [m s], fixed things and boxes
+        [m s]). Turning inside the ramp is neglected:
         the velocity's direction is taken at the ramp's ends' mean yaw.
     """
     n = pose.shape[0]
@@ -35,13 +38,13 @@ def overlap(pose, start, end, radii, boxes, bounds, period, samples):
         ramp[i, 3] = s * start[i, 0] + c * start[i, 1]
         ramp[i, 4] = (c * end[i, 0] - s * end[i, 1] - ramp[i, 2]) / period
         ramp[i, 5] = (s * end[i, 0] + c * end[i, 1] - ramp[i, 3]) / period
-    pairs, deepest = _pairs(ramp, radii, period, samples)
-    return pairs, deepest, _fixed(ramp, radii, boxes, bounds, period, samples)
+    pairs, deepest, apart = _pairs(ramp, radii, outside, period, samples)
+    return pairs, deepest, apart, _fixed(ramp, radii, boxes, moved, bounds, period, samples)
 
 
 @njit
-def _pairs(ramp, radii, period, samples):
-    total, deepest = 0.0, 0.0
+def _pairs(ramp, radii, outside, period, samples):
+    total, deepest, apart = 0.0, 0.0, 0.0
     for i in range(ramp.shape[0]):
         for j in range(i + 1, ramp.shape[0]):
             reach = radii[i] + radii[j]
@@ -56,7 +59,6 @@ def _pairs(ramp, radii, period, samples):
             depth = reach - _nearest(dx, dy, ux, uy, ax, ay, period)
             if depth <= 0.0:
                 continue
-            deepest = max(deepest, depth)
             inside = 0.0
             for k in range(samples):
                 t = (k + 0.5) / samples * period
@@ -64,8 +66,14 @@ def _pairs(ramp, radii, period, samples):
                 y = dy + (uy + 0.5 * ay * t) * t
                 inside += max(0.0, reach - math.hypot(x, y)) * period / samples
             # a touch that falls between samples still counts: nothing but 0 is 0
-            total += inside if inside > 0.0 else depth * period / samples
-    return total, deepest
+            if inside <= 0.0:
+                inside = depth * period / samples
+            if outside[i] or outside[j]:
+                apart += inside
+            else:
+                total += inside
+                deepest = max(deepest, depth)
+    return total, deepest, apart
 
 
 @njit
@@ -96,7 +104,7 @@ def _squared(dx, dy, ux, uy, ax, ay, t):
 
 
 @njit
-def _fixed(ramp, radii, boxes, bounds, period, samples):
+def _fixed(ramp, radii, boxes, moved, bounds, period, samples):
     total = 0.0
     for i in range(ramp.shape[0]):
         r = radii[i]
@@ -110,7 +118,9 @@ def _fixed(ramp, radii, boxes, bounds, period, samples):
             )
             total += max(0.0, depth) * period / samples
             for b in range(boxes.shape[0]):
-                dx, dy = x - boxes[b, 0], y - boxes[b, 1]
+                share = t / period
+                dx = x - boxes[b, 0] - (moved[b, 0] - boxes[b, 0]) * share
+                dy = y - boxes[b, 1] - (moved[b, 1] - boxes[b, 1]) * share
                 reach = r + boxes[b, 3] + boxes[b, 4]
                 if dx * dx + dy * dy > reach * reach:
                     continue

@@ -1,11 +1,12 @@
 """Draws what cannot be seen: goals, paths, planned commands, trails, names, clock."""
 
 import colorsys
-from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+
+from mjmr.geometry import Pinhole
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
@@ -22,36 +23,6 @@ def palette(n: int) -> list[Rgb]:
         tuple(round(255 * c) for c in colorsys.hsv_to_rgb(h, 0.55, 1.0))  # pyright: ignore
         for h in hues
     ]
-
-
-@dataclass(frozen=True)
-class View:
-    """A pinhole camera.
-
-    Attributes:
-        position: (3,) [m], world frame.
-        rotation: R_world_camera (3, 3); columns are the image's right, down and forward.
-        focal: [px].
-        width: Of the picture [px].
-        height: Of the picture [px].
-    """
-
-    position: Array
-    rotation: Array
-    focal: float
-    width: int
-    height: int
-
-    def project(self, points: Array) -> Array:
-        """Pixels (..., 2) of world points (..., 3); NaN for what lies behind the camera."""
-        local = (points - self.position) @ self.rotation
-        depth = np.where(local[..., 2:] > 1e-6, local[..., 2:], np.nan)
-        return local[..., :2] / depth * self.focal + [self.width / 2, self.height / 2]
-
-    def ground(self, points: Array, z: float = 0.003) -> Array:
-        """Pixels (..., 2) of points (..., 2) on the floor."""
-        height = np.full((*points.shape[:-1], 1), z)
-        return self.project(np.concatenate([points, height], axis=-1))
 
 
 def draw_line(
@@ -79,11 +50,11 @@ def _dashes(pixels: Array, period: float = 12.0) -> Array:
 
 
 def draw_ring(
-    picture: Picture, view: View, centre: Array, radius: float, colour: Rgb, thickness: int = 1
+    picture: Picture, view: Pinhole, centre: Array, radius: float, colour: Rgb, thickness: int = 1
 ) -> None:
     """Draw a circle on the floor: centre (2,) and radius [m]."""
     if np.isfinite(centre).all():
-        draw_line(picture, view.ground(centre + radius * _CIRCLE.T), colour, thickness)
+        draw_line(picture, view.on_floor(centre + radius * _CIRCLE.T), colour, thickness)
 
 
 def draw_text(
@@ -105,7 +76,7 @@ def draw_text(
 
 def draw_notes(
     picture: Picture,
-    view: View,
+    view: Pinhole,
     poses: Array,
     radii: Array,
     notes: dict[str, Array],
@@ -132,14 +103,14 @@ def draw_notes(
             if waypoints is not None and np.isfinite(waypoints[i]).all():
                 route.insert(1, waypoints[i])
                 draw_ring(picture, view, waypoints[i], 0.015, colour, 2)
-            draw_line(picture, view.ground(np.stack(route)), colour, 1, dashed=True)
+            draw_line(picture, view.on_floor(np.stack(route)), colour, 1, dashed=True)
         if stops is not None:
-            draw_line(picture, view.ground(np.stack([here, stops[i]])), colour, 2)
+            draw_line(picture, view.on_floor(np.stack([here, stops[i]])), colour, 2)
             draw_ring(picture, view, stops[i], radii[i], colour, 1)
 
 
-def draw_trails(picture: Picture, view: View, track: Array, colours: list[Rgb]) -> None:
+def draw_trails(picture: Picture, view: Pinhole, track: Array, colours: list[Rgb]) -> None:
     """Draw where robots have been: track (k, n, 2) [m], oldest first."""
     for i, colour in enumerate(colours):
         faint: Rgb = tuple(c // 2 for c in colour)  # pyright: ignore[reportAssignmentType]
-        draw_line(picture, view.ground(track[:, i]), faint, 1)
+        draw_line(picture, view.on_floor(track[:, i]), faint, 1)

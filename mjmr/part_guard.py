@@ -39,6 +39,8 @@ def check(part: Part, reference: str, loaded: Any) -> None:
         raise refuse(f"its constructor takes {_signature(loaded)}")
     for method in part.methods if isinstance(loaded, type) else ():
         found = getattr(loaded, method.name, None)
+        if found is None and method.optional:
+            continue
         if found is None:
             raise refuse(f"it has no method {method.name}")
         if not callable(found):
@@ -96,10 +98,11 @@ class Guard:
         sizes = dict(zip(part.constructor or (), arguments, strict=False))
         self._part = self._call("its constructor", str, loaded, arguments)
         for method in part.methods:
-            if not callable(getattr(self._part, method.name, None)):
+            if callable(getattr(self._part, method.name, None)):
+                # An attribute of the instance: found without __getattr__.
+                setattr(self, method.name, self._checked(method, sizes))
+            elif not method.optional:
                 raise PartError(f"{self._told} built an object without a method {method}")
-            # An attribute of the instance: found without __getattr__.
-            setattr(self, method.name, self._checked(method, sizes))
 
     def __getattr__(self, name: str) -> Any:
         if name == "_part":  # not built yet

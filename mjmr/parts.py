@@ -19,7 +19,7 @@ Shape = tuple[int | str, ...]
 
 @dataclass(frozen=True, kw_only=True)
 class Method:
-    """A method every class of a role must have.
+    """A method every class of a role must have, or may have.
 
     Args:
         name: Its name.
@@ -27,12 +27,16 @@ class Method:
         returns: Shape of the finite floats it returns; a name stands for the constructor argument
             of that name. None leaves it open what is returned.
         unit: Unit and frame of what is returned.
+        optional: Whether a class may do without; one that has it must fit all the same.
+        doc: When it is called and with what, for ``mjmr show``.
     """
 
     name: str
     arguments: tuple[str, ...] = ()
     returns: Shape | None = None
     unit: str = ""
+    optional: bool = False
+    doc: str = ""
 
     def __str__(self) -> str:
         text = f"{self.name}({', '.join(self.arguments)})"
@@ -52,8 +56,8 @@ class Part:
         default: Dotted reference ``package.module:Class`` of the published one.
         constructor: Names of the constructor's arguments, given by position; None leaves them
             open.
-        methods: What every class of this role has.
-        optional: What one may have beside, a sentence each.
+        methods: What every class of this role has, or may have.
+        optional: Attributes one may have beside, a sentence each.
 
     Raises:
         InvalidInputError: The declaration contradicts itself.
@@ -81,7 +85,7 @@ class Part:
     def interface(self) -> str:
         """What a class must offer, in one line."""
         told = [] if self.constructor is None else [f"__init__({', '.join(self.constructor)})"]
-        return " and ".join([*told, *map(str, self.methods)])
+        return " and ".join([*told, *(str(m) for m in self.methods if not m.optional)])
 
 
 @dataclass(frozen=True)

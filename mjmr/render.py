@@ -9,12 +9,15 @@ from numpy.typing import NDArray
 
 from mjmr.errors import GL_ADVICE, MissingGLError, UnknownNameError
 from mjmr.film_options import LOOKS
+from mjmr.geometry import Pinhole
 
 
 class Renderer:
     """Renders RGB pictures; ``draft`` without shadows and anti-aliasing, ``fine`` with both."""
 
-    def __init__(self, model: mujoco.MjModel, width: int, height: int, look: str = "draft"):
+    def __init__(
+        self, model: mujoco.MjModel, width: int, height: int, look: str = "draft", quads: int = 1
+    ):
         """Open an off-screen context.
 
         Args:
@@ -22,6 +25,7 @@ class Renderer:
             width: [px].
             height: [px].
             look: One of ``LOOKS``.
+            quads: Pieces along each side of flat shapes in a draft; lamps shade only their corners.
 
         Raises:
             MissingGLError: No OpenGL; the message says what to install.
@@ -35,7 +39,7 @@ class Renderer:
         quality.offsamples = 4 if look == "fine" else 0
         if look == "draft":
             # in software half of the time went into the triangles of round shapes and the floor
-            quality.numslices, quality.numstacks, quality.numquads = 20, 6, 1
+            quality.numslices, quality.numstacks, quality.numquads = 20, 6, quads
         try:
             self._renderer = mujoco.Renderer(model, height, width)
         except Exception as error:  # each GL backend raises its own kind
@@ -53,19 +57,41 @@ class Renderer:
             data: State whose kinematics are up to date.
             camera: Name or index of a model's camera, or an ``mujoco.MjvCamera``.
         """
+        self._aim(data, camera)
+        return self._renderer.render()
+
+    def depth(self, data: mujoco.MjData, camera: Any) -> NDArray[np.float32]:
+        """Depth along the optical axis [m], shape (height, width); infinite where nothing is."""
+        self._aim(data, camera)
+        self._renderer.enable_depth_rendering()
+        try:
+            depth = self._renderer.render()
+        finally:
+            self._renderer.disable_depth_rendering()
+        far = self.model.vis.map.zfar * self.model.stat.extent
+        depth[depth > 0.999 * far] = np.inf
+        return depth
+
+    def geoms(self, data: mujoco.MjData, camera: Any) -> NDArray[np.int32]:
+        """Geom seen by each pixel, shape (height, width); -1 where there is none."""
+        self._aim(data, camera)
+        self._renderer.enable_segmentation_rendering()
+        try:
+            seen = self._renderer.render()
+        finally:
+            self._renderer.disable_segmentation_rendering()
+        return np.where(seen[..., 1] == mujoco.mjtObj.mjOBJ_GEOM, seen[..., 0], -1).astype(np.int32)
+
+    def _aim(self, data: mujoco.MjData, camera: Any) -> None:
         self._renderer.update_scene(data, camera, scene_option=self._option)
         flags = self._renderer.scene.flags
         flags[mujoco.mjtRndFlag.mjRND_SHADOW] = self._fine
         flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = 0
         flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = 0
         flags[mujoco.mjtRndFlag.mjRND_HAZE] = 0
-        return self._renderer.render()
 
-    def view(self) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
-        """Camera of the last picture: position (3,), rotation (3, 3), focal length [px].
-
-        The rotation's columns are the image's right, down and forward in the world frame.
-        """
+    def view(self) -> Pinhole:
+        """Camera of the last picture, in the world frame."""
         left, camera = self._renderer.scene.camera
         # MuJoCo draws a single picture from midway between its two eyes
         position = (np.array(left.pos, dtype=np.float64) + camera.pos) / 2.0
@@ -73,11 +99,8 @@ class Renderer:
         down = -np.array(camera.up, dtype=np.float64)
         right = np.cross(down, forward)
         focal = 0.5 * self.height * camera.frustum_near / camera.frustum_top
-        return (
-            position,
-            np.column_stack([right, down, forward]),
-            float(focal),
-        )
+        rotation = np.column_stack([right, down, forward])
+        return Pinhole(position, rotation, float(focal), self.width, self.height)
 
     def close(self) -> None:
         """Free the context."""

@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from mjmr.cart_servos import CartServos
 from mjmr.errors import InvalidInputError, SimulationDivergedError
 from mjmr.guard import plausible
 from mjmr.loop import Snapshot, TickedSimulation
@@ -84,6 +85,9 @@ class Simulation(TickedSimulation):
         self._mover_ids = np.array(bodies, dtype=np.int64)
         for group, drive in self._each:
             drive.place(data, group.start)
+        self._carts = CartServos(self.model, world) if world.carts else None
+        if self._carts is not None:
+            self._carts.place(data, 0.0)
         mujoco.mj_forward(model, data)
         # live views: looking the arrays up again would cost more than the check
         self._qpos, self._warning_counts = self.data.qpos, self.data.warning.number
@@ -105,9 +109,18 @@ class Simulation(TickedSimulation):
         ids = self._mover_ids
         return np.concatenate([self.data.xpos[ids], self.data.xquat[ids]], axis=1)
 
+    def cart_boxes(self) -> Array:
+        """Carts as boxes (k, 5)."""
+        return np.zeros((0, 5)) if self._carts is None else self._carts.boxes(self.data)
+
     def full_positions(self) -> Array:
         """MuJoCo's ``qpos``, shape (nq,), a copy."""
         return self.data.qpos.copy()
+
+    def visible_state(self) -> tuple[Array, Array, Array]:
+        """Joint positions, and positions and quaternions of mocap bodies."""
+        data = self.data
+        return data.qpos.copy(), data.mocap_pos.copy(), data.mocap_quat.copy()
 
     def watch_steps(self, watcher: Callable[[], None]) -> None:
         """Call ``watcher`` after every physics step; for meters of contact, which are brief."""
@@ -124,6 +137,8 @@ class Simulation(TickedSimulation):
         for group, drive in self._each:
             start, target = group.next_ramp(time, period)
             drive.ramp(data, start, target, period)
+        if self._carts is not None:
+            self._carts.drive(data, time, period)
 
     def _advance(self, steps: int) -> None:
         model, data = self.model, self.data

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from mjmr.cart import Cart
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.group import Group
 
@@ -18,8 +19,11 @@ if TYPE_CHECKING:
     import mujoco
 
     from mjmr.robots.platform import Platform
+    from mjmr.sensors.base import Sensor
+    from mjmr.sensors.camera import Camera
 
 FLOORS = ("carpet", "concrete")
+LIGHTINGS = ("even", "uneven")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,8 +83,9 @@ class World:
     Attributes:
         bounds: Inner faces of the wall (4,) [m].
         field: Marked playing field (4,) [m], or None.
-        props: Boxes and balls, in order of declaration.
+        props: Boxes, balls and carts, in order of declaration.
         groups: Robots, in order of declaration.
+        sensors: Cameras and other sensors that stand in the world, by name.
         simulation: The one that has the robots now.
     """
 
@@ -91,6 +96,7 @@ class World:
         field: ArrayLike | None = None,
         wall_height: float = 0.1,
         floor: str = "carpet",
+        lighting: str = "even",
     ):
         """Declare an empty world.
 
@@ -99,19 +105,24 @@ class World:
             field: Rectangle of a marked playing field, same form, or None.
             wall_height: [m].
             floor: One of ``FLOORS``; carpet carries field lines when there is a field.
+            lighting: One of ``LIGHTINGS``; uneven: a lamp near the lower left corner, which makes
+                that side of the floor about twice as bright as the other.
 
         Raises:
             InvalidInputError: Bounds without area.
-            UnknownNameError: Unknown floor.
+            UnknownNameError: Unknown floor or lighting.
         """
         self.bounds = _rectangle(bounds, "bounds")
         self.field = None if field is None else _rectangle(field, "field")
         self.wall_height = float(wall_height)
         if floor not in FLOORS:
             raise UnknownNameError("floor", floor, FLOORS)
-        self.floor = floor
-        self.props: list[Box | Ball] = []
+        if lighting not in LIGHTINGS:
+            raise UnknownNameError("lighting", lighting, LIGHTINGS)
+        self.floor, self.lighting = floor, lighting
+        self.props: list[Box | Ball | Cart] = []
         self.groups: list[Group] = []
+        self.sensors: dict[str, Sensor] = {}
         self.simulation: Any = None
         self._edits: list[Callable[[Any], None]] = []
 
@@ -137,6 +148,12 @@ class World:
         self.props.append(ball)
         return ball
 
+    def add_cart(self, x: float, y: float, length: float, width: float, **options: Any) -> Cart:
+        """Put a box on a rail that goes to and fro; see :class:`mjmr.cart.Cart` for the options."""
+        cart = Cart(x=x, y=y, length=length, width=width, **options)
+        self.props.append(cart)
+        return cart
+
     def add_group(
         self, platform: "type[Platform] | Platform", poses: ArrayLike, **options: Any
     ) -> Group:
@@ -160,6 +177,53 @@ class World:
         self.groups.append(group)
         return group
 
+    def add_camera(
+        self,
+        camera: "Camera",
+        *,
+        position: ArrayLike,
+        look_at: ArrayLike | None = None,
+        quaternion: ArrayLike | None = None,
+        name: str = "camera",
+    ) -> "Camera":
+        """Stand a camera in the world; it is sampled like the robots' sensors.
+
+        Args:
+            camera: Not mounted elsewhere.
+            position: (3,) [m], world frame.
+            look_at: A point it looks at (3,) [m]; up in the image is up, or +y straight down.
+            quaternion: Its orientation (w, x, y, z) instead, MuJoCo's convention: it looks along
+                its -z, +y is up in the image.
+            name: Of the camera.
+
+        Returns:
+            The camera.
+
+        Raises:
+            InvalidInputError: The name is taken, or the camera or its pose cannot be used.
+        """
+        camera.stand(position, look_at, quaternion)
+        return self.mount(camera, name)
+
+    def mount(self, sensor: Any, name: str | None = None) -> Any:
+        """Let a sensor stand in the world; it is sampled like the robots' sensors.
+
+        Args:
+            sensor: Not mounted elsewhere.
+            name: Default: the sensor's own name.
+
+        Returns:
+            The sensor.
+
+        Raises:
+            InvalidInputError: The name is taken.
+        """
+        key = name or sensor.name
+        if key in self.sensors:
+            raise InvalidInputError(f"there is a sensor named {key!r} in this world already")
+        self.sensors[key] = sensor
+        return sensor
+
     def edit(self, change: "Callable[[mujoco.MjSpec], None]") -> None:
         """Register a change to the MjSpec, applied at the end of every build."""
         self._edits.append(change)
@@ -177,11 +241,20 @@ class World:
     @property
     def movers(self) -> Sequence[tuple[str, Box | Ball]]:
         """Props that can be moved, with their body names in the built model."""
-        found = []
-        for i, prop in enumerate(self.props):
-            if isinstance(prop, Ball) or prop.mass is not None:
-                found.append((f"{type(prop).__name__.lower()}{i}", prop))
-        return found
+        return [
+            (name, prop)
+            for name, prop in self.named_props()
+            if isinstance(prop, Ball) or (isinstance(prop, Box) and prop.mass is not None)
+        ]
+
+    @property
+    def carts(self) -> Sequence[tuple[str, Cart]]:
+        """Boxes that go to and fro by themselves, with their names in the built model."""
+        return [(name, prop) for name, prop in self.named_props() if isinstance(prop, Cart)]
+
+    def named_props(self) -> Sequence[tuple[str, Box | Ball | Cart]]:
+        """Props with their names in the built model."""
+        return [(f"{type(p).__name__.lower()}{i}", p) for i, p in enumerate(self.props)]
 
     def spec(self) -> "mujoco.MjSpec":
         """Build the MjSpec of this world; each call builds a new one."""

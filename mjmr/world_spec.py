@@ -5,6 +5,9 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
+from mjmr.cart import Cart
+from mjmr.cart_servos import CartServos, add_cart
+
 if TYPE_CHECKING:
     from mjmr.world import Ball, Box, World
 
@@ -33,14 +36,21 @@ def build_spec(world: "World") -> mujoco.MjSpec:
     _stripes(spec, world)
     if world.field is not None:
         _field_lines(spec, world.field)
-    for name, prop in _named_props(world):
-        _prop(spec, name, prop)
+    for name, prop in world.named_props():
+        if isinstance(prop, Cart):
+            add_cart(spec, name, prop)
+        else:
+            _prop(spec, name, prop)
     for group in world.groups:
         group.add_to(spec)
+    for name, sensor in world.sensors.items():
+        sensor.add_to(spec, [""], name)
     spec.visual.quality.offsamples = 0
     spec.visual.global_.offwidth, spec.visual.global_.offheight = 1920, 1080
-    spec.visual.headlight.ambient = [0.35, 0.35, 0.35]
-    spec.visual.headlight.diffuse = [0.25, 0.25, 0.25]
+    # the headlight goes with the camera; where a lamp is to shade the scene it gives nothing
+    glow = 0.25 if world.lighting == "uneven" else 0.35
+    spec.visual.headlight.ambient = [glow] * 3
+    spec.visual.headlight.diffuse = [0.0 if world.lighting == "uneven" else 0.25] * 3
     spec.visual.headlight.specular = [0.0, 0.0, 0.0]
     spec.visual.map.znear = 0.01
     return spec
@@ -54,15 +64,12 @@ def export_xml(world: "World", timestep: float) -> str:
     data = mujoco.MjData(model)
     for group in world.groups:
         group.platform.bind(model, group.prefixes).place(data, group.start)
+    CartServos(model, world).place(data, 0.0)
     for k, joint in enumerate(spec.joints):
         joint.actfrcrange = model.jnt_actfrcrange[model.joint(joint.name).id if joint.name else k]
     spec.add_key(name="start", qpos=data.qpos, act=data.act)
     spec.compile()
     return spec.to_xml()
-
-
-def _named_props(world: "World"):
-    return [(f"{type(p).__name__.lower()}{i}", p) for i, p in enumerate(world.props)]
 
 
 def _materials(spec: mujoco.MjSpec, world: "World") -> None:
@@ -76,6 +83,7 @@ def _materials(spec: mujoco.MjSpec, world: "World") -> None:
     spec.add_material(name="wall", rgba=[0.82, 0.83, 0.85, 1], specular=0.1)
     spec.add_material(name="fixed_box", rgba=[0.55, 0.42, 0.30, 1], specular=0.05)
     spec.add_material(name="free_box", rgba=[0.78, 0.60, 0.32, 1], specular=0.05)
+    spec.add_material(name="cart", rgba=[0.80, 0.36, 0.20, 1], specular=0.05)
     spec.add_material(name="line", rgba=[0.95, 0.95, 0.95, 1], specular=0.0)
 
 
@@ -83,6 +91,20 @@ def _lights_and_overview(spec: mujoco.MjSpec, world: "World") -> None:
     low, high = world.bounds[:2], world.bounds[2:]
     centre, size = (low + high) / 2, high - low
     far = float(size.max())
+    if world.lighting == "uneven":
+        _lamp(spec, low + 0.15 * size, far)
+    else:
+        _sun(spec, centre, far)
+    # far enough to see the walls in a 5:4 picture, tilted 15 degrees off the vertical
+    half = max(size[1] / 2, size[0] / 2 / 1.25) * 1.16
+    distance = half / np.tan(np.radians(OVERVIEW_FOVY / 2))
+    tilt = np.radians(15.0)
+    pos = [centre[0], centre[1] - distance * np.sin(tilt), distance * np.cos(tilt)]
+    quat = [np.cos(tilt / 2), np.sin(tilt / 2), 0.0, 0.0]
+    spec.worldbody.add_camera(name=OVERVIEW, pos=pos, quat=quat, fovy=OVERVIEW_FOVY)
+
+
+def _sun(spec: mujoco.MjSpec, centre: np.ndarray, far: float) -> None:
     spec.worldbody.add_light(
         type=mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
         pos=[centre[0] - far / 2, centre[1] - far / 2, far],
@@ -91,13 +113,23 @@ def _lights_and_overview(spec: mujoco.MjSpec, world: "World") -> None:
         specular=[0.15, 0.15, 0.15],
         castshadow=True,
     )
-    # far enough to see the walls in a 5:4 picture, tilted 15 degrees off the vertical
-    half = max(size[1] / 2, size[0] / 2 / 1.25) * 1.16
-    distance = half / np.tan(np.radians(OVERVIEW_FOVY / 2))
-    tilt = np.radians(15.0)
-    pos = [centre[0], centre[1] - distance * np.sin(tilt), distance * np.cos(tilt)]
-    quat = [np.cos(tilt / 2), np.sin(tilt / 2), 0.0, 0.0]
-    spec.worldbody.add_camera(name=OVERVIEW, pos=pos, quat=quat, fovy=OVERVIEW_FOVY)
+
+
+def _lamp(spec: mujoco.MjSpec, at: np.ndarray, far: float) -> None:
+    height = 0.6 * far
+    spec.worldbody.add_light(
+        # wide open: a lamp that shines everywhere below; point lights are not drawn by MuJoCo's GL
+        type=mujoco.mjtLightType.mjLIGHT_SPOT,
+        pos=[*at, height],
+        dir=[0.0, 0.0, -1.0],
+        cutoff=90.0,
+        exponent=0.0,
+        diffuse=[0.95, 0.95, 0.95],
+        specular=[0.15, 0.15, 0.15],
+        # falls with the square of the distance, to a half at twice the height
+        attenuation=[0.67, 0.0, 0.33 / height**2],
+        castshadow=True,
+    )
 
 
 def _floor(spec: mujoco.MjSpec, world: "World") -> None:

@@ -127,6 +127,35 @@ class PoseFilter:
             raise InvalidInputError(f"period is {period}; it must be positive and finite")
         _predict(self._state, self._covariance, u, float(period), self._twist_variance)
 
+    def ahead(
+        self, commands: ArrayLike, period: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Where the robots will be after commands; the estimate itself stays where it is.
+
+        For reports that arrive late: the filter waits at the newest report's instant, and this
+        bridges the time since.
+
+        Args:
+            commands: Shape (k, n, 3): twists at the end of each period, oldest first, body frame.
+            period: Length of each [s].
+
+        Returns:
+            Pose (n, 3) [m, m, rad] and linear velocity (n, 2) [m/s], world frame; NaN for robots
+            never reported.
+
+        Raises:
+            InvalidInputError: Shapes do not fit.
+        """
+        queue = np.ascontiguousarray(commands, dtype=np.float64)
+        if queue.ndim != 3 or queue.shape[1:] != (self._n, 3):
+            raise InvalidInputError(
+                f"commands has shape {queue.shape}; it must be (k, {self._n}, 3)"
+            )
+        state = _ahead(self._state, queue, float(period))
+        pose = state[:, :3].copy()
+        pose[:, 2] = wrap_angle(pose[:, 2])
+        return pose, rotate(state[:, 3:5], state[:, 2])
+
     def update(self, report: ArrayLike) -> None:
         """Take in reported poses.
 
@@ -210,6 +239,21 @@ def advance(state, command, T, new, F, G):
         G[1, 1] += cos * s
         G[0, 2] -= dy * by_turn
         G[1, 2] += dx * by_turn
+
+
+@njit
+def _ahead(states, commands, T):
+    """States (n, 6) after commands (k, n, 3), without their covariances."""
+    after = states.copy()
+    new = np.empty(6)
+    F = np.empty((6, 6))
+    G = np.empty((6, 3))
+    for k in range(commands.shape[0]):
+        for i in range(after.shape[0]):
+            if not math.isnan(after[i, 0]):
+                advance(after[i], commands[k, i], T, new, F, G)
+                after[i] = new
+    return after
 
 
 @njit

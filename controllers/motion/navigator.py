@@ -42,6 +42,9 @@ class NavigatorConfig:
         motion: ``paper`` (along and across) or ``bisection`` (an ablation, not in the paper).
         fail_safe: Search also stays clear of robots that brake instead of obeying; not in the
             paper.
+        strangers: Robots, by index, that do not take part: never commanded, expected to keep
+            their velocity for ``foresight`` and to brake then; not in the paper.
+        foresight: See ``strangers`` [s]; about the time that braking from full speed takes.
 
     Raises:
         InvalidInputError: A value is outside its range.
@@ -63,9 +66,11 @@ class NavigatorConfig:
     max_nodes: int = 2000
     motion: Literal["paper", "bisection"] = "paper"
     fail_safe: bool = False
+    strangers: tuple[int, ...] = ()
+    foresight: float = 0.35
 
     def __post_init__(self) -> None:
-        for name in ("radius", "period"):
+        for name in ("radius", "period", "foresight"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
                 raise InvalidInputError(f"{name} is {value}; it must be positive and finite")
@@ -139,6 +144,11 @@ class Navigator:
             raise InvalidInputError(f"n is {n}; there must be at least one robot")
         self.config = config
         self._n = n
+        stranger = np.zeros(n, dtype=np.bool_)
+        for index in config.strangers:
+            if not 0 <= index < n:
+                raise InvalidInputError(f"strangers names robot {index}; valid: 0 to {n - 1}")
+            stranger[index] = True
         c, limits = config, config.limits
         waypoints, desired = np.zeros((n, 2)), np.zeros((n, 2))
         sampled, plan_nodes = np.zeros(n, dtype=np.bool_), np.zeros(n, dtype=np.int64)
@@ -147,7 +157,7 @@ class Navigator:
         self.sampled = _read_only(sampled)
         self.plan_nodes = _read_only(plan_nodes)
         self._out = Output(waypoints, desired, sampled, plan_nodes)
-        self._everyone = np.ones(n, dtype=np.bool_)
+        self._everyone = ~stranger
         streams = seed_streams(rng, 2 * n)
         sides, obstacles = check_bounds(bounds, c.radius), prepare_boxes(boxes)
         self._dynamics = Dynamics(
@@ -165,8 +175,10 @@ class Navigator:
         self._scene.discs[:, 2] = c.radius
         self._forest = make_forest(n, c.errt(), streams)
         self._search = make_search(
-            sides, obstacles, c.radius + c.margin, c.fail_safe, c.samples, n, streams, n
-        )
+            sides, obstacles, c.radius + c.margin, c.fail_safe, c.samples, stranger, c.foresight,
+            streams, n,
+        )  # fmt: skip
+        self._obstacles = obstacles
         self._direction = np.zeros((n, 2))
         # Plan, plan around robots, the paper's motion control, search: True or False each.
         self._parts = (
@@ -206,6 +218,8 @@ class Navigator:
             raise InvalidInputError(
                 f"active has shape {on.shape} and type {on.dtype}; it must be ({self._n},) bool"
             )
+        if self.config.strangers:
+            on = on & self._everyone
         command = np.empty((self._n, 2))
         bad = _step(
             x,
@@ -228,6 +242,24 @@ class Navigator:
                 f"{name} of robot {robot} is {value[robot].tolist()}; it must be finite"
             )
         return command
+
+    def see_boxes(self, boxes: ArrayLike) -> None:
+        """Take in where the boxes are now; the next step keeps clear of them there.
+
+        Args:
+            boxes: As many as the navigator was made with, shape (k, 5): x, y, yaw, half-length,
+                half-width [m, rad]. Give one that moves the way it will go
+                (:func:`controllers.motion.moving.swept_boxes`).
+
+        Raises:
+            InvalidInputError: Another number of boxes, or one that is no box.
+        """
+        rows = prepare_boxes(boxes)
+        if rows.shape != self._obstacles.shape:
+            raise InvalidInputError(
+                f"boxes has {len(rows)} rows; the navigator was made with {len(self._obstacles)}"
+            )
+        self._obstacles[:] = rows
 
     def _checked(self, name: str, value: ArrayLike) -> NDArray[np.float64]:
         a = np.array(value, dtype=np.float64, order="C")  # compiled for arrays of its own

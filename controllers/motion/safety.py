@@ -35,6 +35,9 @@ class Search(NamedTuple):
         clearance: Radius of every robot and margin [m].
         fail_safe: Also stay clear of robots that chose before *and brake instead*: one that stops
             obeying in this very cycle is then not hit. Ours, not the paper's.
+        stranger: Shape (n,) bool, robots that do not take part: expected to keep their velocity
+            for ``foresight`` and to brake then. Ours, not the paper's.
+        foresight: See ``stranger`` [s].
         previous: Shape (n, 2) [m/s^2], world frame, accelerations chosen in the last cycle.
         streams: uint64, random streams; robot i uses ``first_stream + i``.
         first_stream: See ``streams``.
@@ -49,6 +52,8 @@ class Search(NamedTuple):
     boxes: NDArray[np.float64]
     clearance: float
     fail_safe: bool
+    stranger: NDArray[np.bool_]
+    foresight: float
     previous: NDArray[np.float64]
     streams: NDArray[np.uint64]
     first_stream: int
@@ -64,16 +69,20 @@ def make_search(
     clearance: float,
     fail_safe: bool,
     samples: int,
-    n: int,
+    stranger: NDArray[np.bool_],
+    foresight: float,
     streams: NDArray[np.uint64],
     first_stream: int,
 ) -> Search:
-    """Fresh memory for ``n`` robots and ``samples`` random accelerations a choice."""
+    """Fresh memory for the robots and ``samples`` random accelerations a choice."""
+    n = len(stranger)
     return Search(
         bounds,
         boxes,
         float(clearance),
         bool(fail_safe),
+        stranger,
+        float(foresight),
         np.zeros((n, 2)),
         streams,
         first_stream,
@@ -223,7 +232,8 @@ def choose_commands(position, velocity, desired, active, dynamics, search, comma
         velocity: Shape (n, 2) [m/s], world frame.
         desired: Shape (n, 2) [m/s], world frame: what motion control wants. It is reachable by
             construction and not tested for that.
-        active: Shape (n,) bool; a robot that is not is predicted, and commanded, to brake.
+        active: Shape (n,) bool; a robot that is not is predicted, and commanded, to brake; a
+            stranger is never active and is predicted as :class:`Search` says.
         dynamics: A :class:`controllers.motion.trapezoid.Dynamics`.
         search: A :class:`Search`; its memory is written.
         command: Shape (n, 2) [m/s], world frame; written.
@@ -236,6 +246,10 @@ def choose_commands(position, velocity, desired, active, dynamics, search, comma
         cx, cy = braking_command(velocity[i, 0], velocity[i, 1], dynamics.B, dynamics.T)
         command[i, 0] = cx
         command[i, 1] = cy
+        if search.stranger[i]:
+            _expect(i, position, velocity, dynamics, search, search.braking, 1)
+            _expect(i, position, velocity, dynamics, search, search.chosen, 0)
+            continue
         _settle(i, position, velocity, command, dynamics, search, search.braking, 1)
         _settle(i, position, velocity, command, dynamics, search, search.chosen, 0)
     for i in range(position.shape[0]):
@@ -264,6 +278,22 @@ def _settle(i, position, velocity, command, dynamics, search, predictions, kind)
         command[i, 1],
         dynamics.B,
         dynamics.T,
+        predictions[i],
+    )
+
+
+@njit
+def _expect(i, position, velocity, dynamics, search, predictions, kind):
+    """Write the prediction of a stranger: it keeps its velocity for a while, then brakes."""
+    search.reach[kind, i] = fill_prediction(
+        position[i, 0],
+        position[i, 1],
+        velocity[i, 0],
+        velocity[i, 1],
+        velocity[i, 0],
+        velocity[i, 1],
+        dynamics.B,
+        search.foresight,
         predictions[i],
     )
 

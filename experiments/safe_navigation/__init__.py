@@ -33,9 +33,11 @@ study = Study(
         Parameter(
             "scene",
             "A: three boxes, parallel lanes; cross4, cross10: no boxes, mirrored goals, a planner "
-            "blind to robots; overlap: two pairs start inside each other; straight: one robot",
+            "blind to robots; stranger10: cross10 with one robot that goes its way at 1 m/s and "
+            "minds nobody; carts: three boxes that go to and fro, parallel lanes; overlap: two "
+            "pairs start inside each other; straight: one robot",
             "A",
-            ("A", "cross4", "cross10", "overlap", "straight"),
+            ("A", "cross4", "cross10", "stranger10", "carts", "overlap", "straight"),
         ),
         Parameter("search", "whether the velocity-space safety search is on", True),
         Parameter("sigma_mm", "deviation of reported positions along x and y", 0.0, unit="mm"),
@@ -63,6 +65,12 @@ study = Study(
         ),
         Parameter("latency", "cycles from a command to its execution", 0, (0, 1, 2, 3)),
         Parameter("predict", "whether the latency is compensated by predicting forward", True),
+        Parameter(
+            "foresee",
+            "whether a stranger is expected to keep its velocity for 0.35 s; else to obey like all",
+            True,
+        ),
+        Parameter("dt_ms", "largest physics timestep; it divides the cycle", 5.0, unit="ms"),
         Parameter("duration", "of a run, simulated", 30.0, unit="s"),
     ),
     sizes=(QUICK, STANDARD, FULL),
@@ -85,6 +93,14 @@ study = Study(
                     arguments=("position", "velocity", "goals", "active"),
                     returns=("n", 2),
                     unit="m/s, world frame",
+                    doc="every cycle; position, velocity and goals (n, 2) [m, m/s, m], world "
+                    "frame, and active (n,) bool, who obeys",
+                ),
+                Method(
+                    name="see_boxes",
+                    arguments=("boxes",),
+                    optional=True,
+                    doc="before a step, in scenes with carts: boxes (k, 5) as they are now",
                 ),
             ),
             optional=(

@@ -5,8 +5,10 @@ from typing import Any
 
 import numpy as np
 
+from controllers.estimation import PoseFilterConfig
 from controllers.motion import NavigatorConfig
-from experiments.safe_navigation.pilot import FilterTracker, Pilot, RawTracker
+from experiments.safe_navigation.pilot import Pilot
+from experiments.safe_navigation.trackers import CartTracker, FilterTracker, RawTracker
 from experiments.safe_navigation.worlds import build
 from mjmr.kinematics import KinematicSimulation
 from mjmr.loop import TickedSimulation
@@ -14,6 +16,7 @@ from mjmr.metrics import ContactMeter, OverlapMeter
 from mjmr.parts import Parts
 
 PERIOD = 1 / 60
+HORIZON = 0.35  # [s]: braking from 2 m/s at 6 m/s^2, and a cycle
 Metrics = dict[str, float | int]
 
 
@@ -32,12 +35,19 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
     if condition["mode"] == "physical":
         from mjmr.simulation import Simulation
 
-        simulation: Any = Simulation(world, seed=seed, control_period=PERIOD)
-        meter: Any = ContactMeter(simulation)
-        tracker: Any = FilterTracker(scene.starts, PERIOD, condition["sigma_mm"] / 1000.0)
+        simulation: Any = Simulation(
+            world, seed=seed, control_period=PERIOD, dt_max=condition["dt_ms"] / 1000.0
+        )
+        meter: Any = ContactMeter(simulation, scene.strangers)
+        noises = PoseFilterConfig(
+            position_noise=max(condition["sigma_mm"] / 1000.0, 1e-4),
+            yaw_noise=1e-3,
+            speed_noise=0.01,
+        )
+        tracker: Any = FilterTracker(scene.starts, PERIOD, noises)
     else:
         simulation = KinematicSimulation(world, seed=seed, control_period=PERIOD)
-        meter = OverlapMeter(simulation)
+        meter = OverlapMeter(simulation, outsiders=scene.strangers)
         tracker = RawTracker(scene.starts, PERIOD)
     config = NavigatorConfig(
         radius=robots.platform.radius,
@@ -48,20 +58,30 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
         plan_around_robots=scene.sees_robots,
         fail_safe=condition["fail_safe"],
         motion=condition["motion"],
+        strangers=scene.strangers if condition["foresee"] else (),
     )
+    carts = None
+    if scene.carts:
+        carts = CartTracker(world, PERIOD, condition["sigma_mm"] / 1000.0)
+    boxes = carts.boxes if carts else world.boxes
     navigator = parts["navigator"](
-        world.bounds, world.boxes, robots.n, config, simulation.rng("navigator")
+        world.bounds, boxes, robots.n, config, simulation.rng("navigator")
     )
-    pilot = Pilot(scene, navigator, config, tracker, condition["latency"], condition["predict"])
+    pilot = Pilot(
+        scene, world.bounds, navigator, config, tracker, condition["latency"], condition["predict"]
+    )
+    see_boxes = getattr(navigator, "see_boxes", lambda boxes: None)
     motion = _Motion(simulation, robots) if condition["scene"] == "straight" else None
     simulation.caption = lambda: _caption(meter)
 
     cycles = round(condition["duration"] / PERIOD)
     spent, sampled = np.zeros(cycles), 0
     for k, now in enumerate(simulation.ticks(condition["duration"])):
-        report = robots.localizer.read()
+        report, sampled_at = robots.localizer.read(), robots.localizer.sampled_at
         hearing = robots.acknowledged & ~robots.stopping(now)
-        command = pilot.step(report, robots.executed, hearing)
+        if carts:
+            see_boxes(carts.update(HORIZON))
+        command = pilot.step(now, report, sampled_at, robots.executed, hearing)
         spent[k] = pilot.seconds
         robots.drive(command)
         sampled += int(np.count_nonzero(getattr(navigator, "sampled", False)))
@@ -86,12 +106,14 @@ def _read(meter: Any) -> Metrics:
         last = meter.last_overlap
         return {
             "overlap_mm_s": 1e3 * meter.robots,
+            "stranger_overlap_mm_s": 1e3 * meter.outsiders,
             "obstacle_overlap_mm_s": 1e3 * meter.obstacles,
             "deepest_mm": 1e3 * meter.deepest,
             "last_overlap_s": 0.0 if np.isnan(last) else float(last),
         }
     return {
         "contact_s": meter.robots,
+        "stranger_contact_s": meter.outsiders,
         "obstacle_contact_s": meter.obstacles,
         "contacts": meter.episodes,
         "impulse_Ns": meter.robot_impulse,

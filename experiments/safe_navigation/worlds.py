@@ -15,6 +15,7 @@ from mjmr.faults import Fault
 from mjmr.group import Group
 from mjmr.randomness import Streams
 from mjmr.robots.soccer_bot import SoccerBot
+from mjmr.sensors.cart_report import CartReport
 from mjmr.sensors.localizer import Localizer
 from mjmr.world import World
 
@@ -35,6 +36,8 @@ class Scene:
         boxes: x, y, length, width [m].
         sees_robots: Whether the planner treats other robots as obstacles.
         samples: Accelerations the search draws.
+        strangers: Robots that do not take part: each goes straight for its goals at 1 m/s.
+        carts: x, y, yaw, length, width, travel [m, rad], speed [m/s].
     """
 
     starts: NDArray[np.float64]
@@ -43,6 +46,8 @@ class Scene:
     boxes: tuple[tuple[float, float, float, float], ...] = ()
     sees_robots: bool = True
     samples: int = 50
+    strangers: tuple[int, ...] = ()
+    carts: tuple[tuple[float, ...], ...] = ()
 
 
 def scene(name: str) -> Scene:
@@ -55,13 +60,26 @@ def scene(name: str) -> Scene:
         )
     if name == "straight":
         return Scene(starts=_at(-REACH, [0.0]), far=_at(REACH, [0.0]), near=_at(-REACH, [0.0]))
-    lanes = np.linspace(-1.8, 1.8, 10) if name == "cross10" else np.array(_LANES)
+    if name == "carts":
+        # two that close and open the way in turn, and one that goes along it
+        carts = (
+            (-0.7, 0.9, np.pi / 2, 0.5, 0.3, 1.2, 0.3),
+            (0.7, -0.9, np.pi / 2, 0.5, 0.3, 1.2, 0.3),
+            (0.0, 0.0, 0.0, 0.4, 0.3, 1.6, 0.3),
+        )
+        lanes = np.array(_LANES)
+        return Scene(
+            starts=_at(-REACH, lanes), far=_at(REACH, lanes), near=_at(-REACH, lanes), carts=carts
+        )
+    ten = name in ("cross10", "stranger10")
+    lanes = np.linspace(-1.8, 1.8, 10) if ten else np.array(_LANES)
     cross = Scene(
         starts=_at(-REACH, lanes),
         far=_at(REACH, -lanes),
         near=_at(-REACH, lanes),
         sees_robots=False,
-        samples=100 if name == "cross10" else 50,
+        samples=100 if ten else 50,
+        strangers=(4,) if name == "stranger10" else (),
     )
     if name == "overlap":
         starts = np.array([[-1.0, 0.5], [-0.88, 0.5], [0.0, -0.8], [0.08, -0.74]])
@@ -81,11 +99,18 @@ def build(condition: Mapping[str, Any], seed: int) -> tuple[World, Group, Scene]
     """
     place = scene(condition["scene"])
     starts = place.starts
-    if condition["scene"] in ("A", "cross4", "cross10"):
+    if condition["scene"] not in ("overlap", "straight"):
         starts = starts + Streams(seed).generator("starts").uniform(-_SPREAD, _SPREAD, starts.shape)
     world = World.rectangle(4.9, 3.8, border=0.30)
     for x, y, length, width in place.boxes:
         world.add_box(x, y, length, width)
+    for k, (x, y, yaw, length, width, travel, speed) in enumerate(place.carts):
+        world.add_cart(
+            x, y, length, width, yaw=yaw, travel=travel, speed=speed,
+            start=float(Streams(seed).generator(f"cart {k}").uniform()),
+        )  # fmt: skip
+    if place.carts:
+        world.mount(CartReport(rate=60.0, position_noise=condition["sigma_mm"] / 1000.0))
     poses = np.column_stack([starts, np.zeros(len(starts))])
     robots = world.add_group(SoccerBot, poses, command_latency=condition["latency"])
     lossy = condition["failure"] == "reports-lost"

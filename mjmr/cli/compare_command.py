@@ -128,6 +128,7 @@ def _verdicts(c: "Comparison") -> list[str]:
     if c.a.verdicts is None or c.b.verdicts is None:
         return []
     if not c.changed:
-        return [f"verdicts: all {len(c.a.verdicts)} as before"]
+        return [f"verdicts of the whole runs: all {len(c.a.verdicts)} the same"]
     told = [f"  {name}: {before} -> {after}" for name, (before, after) in c.changed.items()]
-    return [f"verdicts: {len(c.changed)} of {len(c.a.verdicts)} differ, A -> B", *told]
+    count = f"{len(c.changed)} of {len(c.a.verdicts)}"
+    return [f"verdicts of the whole runs: {count} differ, A -> B", *told]

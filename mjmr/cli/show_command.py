@@ -84,7 +84,9 @@ def _parts(study: Study) -> Any:
     table.show_lines = True
     for part in study.parts:
         has = [] if part.constructor is None else [f"__init__({', '.join(part.constructor)})"]
-        has += [*map(str, part.methods), *(f"may have {text}" for text in part.optional)]
+        for m in part.methods:
+            has.append(f"{'may have ' * m.optional}{m}{': ' * bool(m.doc)}{m.doc}")
+        has += [f"may have {text}" for text in part.optional]
         _row(table, part.role, part.doc, part.default, "\n".join(has))
     return table
 

@@ -16,7 +16,7 @@ TEAM_COLOURS: dict[str, Rgba] = {
     "green": (0.15, 0.75, 0.25, 1.0),
 }
 _PINK: Rgba = (1.0, 0.25, 0.75, 1.0)
-_LIME: Rgba = (0.35, 1.0, 0.25, 1.0)
+_CYAN: Rgba = (0.10, 0.95, 0.95, 1.0)
 # one bit a dot, chosen so that no pattern is a rotation of another with the open front unseen
 _PATTERNS = (
     0b0000, 0b1111, 0b0001, 0b0010, 0b0100, 0b1000, 0b0011, 0b0110,
@@ -30,7 +30,7 @@ _SEGMENTS = ("1110111", "0010010", "1011101", "1011011", "0111010",
 def marker_colours(number: int) -> list[Rgba]:
     """Colours of the four dots around the centre for robot ``number`` (repeats after 16)."""
     bits = _PATTERNS[number % len(_PATTERNS)]
-    return [_PINK if bits >> k & 1 else _LIME for k in range(4)]
+    return [_PINK if bits >> k & 1 else _CYAN for k in range(4)]
 
 
 def draw_digit(site: "mujoco.MjsSite", body: "mujoco.MjsBody", digit: int, height: float) -> None:

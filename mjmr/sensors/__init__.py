@@ -1,6 +1,8 @@
 """What robots perceive: sampled on schedule, computed when read."""
 
 from mjmr.sensors.base import Sensor
+from mjmr.sensors.camera import Camera
+from mjmr.sensors.cart_report import CartReport
 from mjmr.sensors.localizer import Localizer
 
-__all__ = ["Localizer", "Sensor"]
+__all__ = ["Camera", "CartReport", "Localizer", "Sensor"]

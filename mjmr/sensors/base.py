@@ -3,6 +3,7 @@
 import math
 from abc import ABC, abstractmethod
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,8 @@ from numpy.typing import NDArray
 from mjmr.errors import InvalidInputError
 
 if TYPE_CHECKING:
+    import mujoco
+
     from mjmr.group import Group
     from mjmr.loop import TickedSimulation
 
@@ -22,7 +25,7 @@ class _Sample:
     time: float
     ready_step: int
     state: Any
-    value: NDArray[np.float64] | None = None
+    value: NDArray[Any] | None = None
 
 
 class Sensor(ABC):
@@ -57,15 +60,16 @@ class Sensor(ABC):
         self.carrier: Group | None = None
         self._simulation: TickedSimulation | None = None
 
-    def bind(self, simulation: "TickedSimulation", group: "Group", stream: str) -> None:
+    def bind(self, simulation: "TickedSimulation", group: "Group | None", stream: str) -> None:
         """Start afresh in ``simulation``; called once by it.
 
         Args:
             simulation: Whose time the schedule follows.
-            group: The robots that carry the sensor.
+            group: The robots that carry the sensor; None for one that stands in the world.
             stream: Name of the sensor's random stream.
         """
-        self._simulation, self._group = simulation, group
+        self._simulation = simulation
+        self._group: Any = group
         self._samples: deque[_Sample] = deque()
         self._next_number = 0
         self._latency_steps = simulation.steps_until(self.latency)
@@ -86,7 +90,7 @@ class Sensor(ABC):
         while len(self._samples) > 1 and self._samples[1].ready_step <= step:
             self._samples.popleft()
 
-    def read(self) -> NDArray[np.float64]:
+    def read(self) -> NDArray[Any]:
         """Newest sample delivered by now; read-only.
 
         Raises:
@@ -118,20 +122,32 @@ class Sensor(ABC):
         copies, self._next_number, self.due_step = state
         self._samples = deque(_Sample(s.number, s.time, s.ready_step, s.state) for s in copies)
 
+    def add_to(  # noqa: B027
+        self, spec: "mujoco.MjSpec", prefixes: Sequence[str], key: str
+    ) -> None:
+        """Add what the sensor needs to a model under construction; by default nothing.
+
+        Args:
+            spec: The world's, with every robot attached.
+            prefixes: MJCF name prefixes of the robots that carry it; one empty prefix for a sensor
+                that stands in the world.
+            key: Name it is mounted under.
+        """
+
     @abstractmethod
-    def prepare(self, sequence: np.random.SeedSequence, group: "Group") -> None:
-        """Set up random streams and indices."""
+    def prepare(self, sequence: np.random.SeedSequence, group: Any) -> None:
+        """Set up random streams and indices; ``group`` is what :meth:`bind` was given."""
 
     @abstractmethod
     def observe(self, time: float) -> Any:
         """State of the world that a sample taken now needs; copies, never views."""
 
     @abstractmethod
-    def compute(self, state: Any, number: int) -> NDArray[np.float64]:
+    def compute(self, state: Any, number: int) -> NDArray[Any]:
         """The sample, from what :meth:`observe` stored and its number."""
 
     @abstractmethod
-    def nothing(self) -> NDArray[np.float64]:
+    def nothing(self) -> NDArray[Any]:
         """What is read before the first delivery."""
 
     def _newest(self) -> _Sample | None:

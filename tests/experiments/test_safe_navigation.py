@@ -7,9 +7,11 @@ import sys
 import numpy as np
 import pytest
 
+from controllers.estimation import PoseFilterConfig
 from experiments.safe_navigation import study
 from experiments.safe_navigation import trial as module
-from experiments.safe_navigation.pilot import FilterTracker, RawTracker, Shuttle
+from experiments.safe_navigation.pilot import Shuttle
+from experiments.safe_navigation.trackers import FilterTracker, RawTracker
 from experiments.safe_navigation.worlds import build, scene
 from mjmr.errors import TruthError
 from mjmr.watch import watching
@@ -61,7 +63,7 @@ def test_a_controller_that_reads_the_truth_is_stopped(monkeypatch):
     """Truth is shut in this study's own loop, in both modes."""
 
     class Peeking(module.Pilot):
-        def step(self, report, executed, hearing):
+        def step(self, *seen):
             return peek()
 
     monkeypatch.setattr(module, "Pilot", Peeking)
@@ -89,8 +91,8 @@ def test_every_scene_runs_in_every_mode_with_every_failure():
 def test_a_robot_without_a_first_report_is_believed_at_its_nominal_start():
     starts = np.array([[1.0, 2.0], [-1.0, -2.0]])
     report = np.array([[np.nan] * 3, [-1.1, -2.1, 0.0]])
-    for tracker in (RawTracker(starts, 0.1), FilterTracker(starts, 0.1, 0.001)):
-        position, velocity = tracker.update(report, np.zeros((2, 3)))
+    for tracker in (RawTracker(starts, 0.1), FilterTracker(starts, 0.1, PoseFilterConfig())):
+        position, velocity = tracker.update(report, 0, np.zeros((2, 3)))
         np.testing.assert_allclose(position, [[1.0, 2.0], [-1.1, -2.1]])
         np.testing.assert_allclose(velocity, 0.0, atol=1e-12)
 
@@ -124,10 +126,10 @@ assert signatures() == before
 def test_a_lost_report_is_bridged_exactly_by_telemetry():
     tracker = RawTracker(np.array([[5.0, 5.0], [6.0, 6.0]]), 0.1)
     executed = np.zeros((2, 3))
-    tracker.update(np.array([[0.0, 0, 0], [1.0, 0, 0]]), executed)
+    tracker.update(np.array([[0.0, 0, 0], [1.0, 0, 0]]), 0, executed)
     moving = np.array([[1.0, 0, 0], [0, 2.0, 0]])
     report = np.array([[np.nan] * 3, [1.0, 0.1, 0]])
-    position, velocity = tracker.update(report, moving)
+    position, velocity = tracker.update(report, 0, moving)
     np.testing.assert_allclose(position, [[0.05, 0], [1.0, 0.1]])
     np.testing.assert_allclose(velocity, [[1, 0], [0, 2]])
 

@@ -147,7 +147,7 @@ def test_swap_a_part_and_compare(capsys, tmp_path, monkeypatch):
     told = " ".join(line.replace("│", " ").split())
     # seven comparisons: three metrics twice, and one that slow robots alone have
     assert told == "speed=0.4 way 0.4 0.8 +0.4 [0.4, 0.4] 8 0.0078* 0.055"
-    assert "verdicts: 1 of 2 differ, A -> B\n  slow: holds -> fails" in out
+    assert "verdicts of the whole runs: 1 of 2 differ, A -> B\n  slow: holds -> fails" in out
     with (tmp_path / "found.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert {r["speed"] for r in rows} == {"0.4", "0.8"}

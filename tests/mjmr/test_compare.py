@@ -226,9 +226,9 @@ def test_what_is_printed(tmp_path, runs, capsys, monkeypatch):
     assert "1 trials failed in A" in out
     assert "1 trials finished in B alone and are left out" in out
     assert "comparisons" not in out
-    assert "verdicts:" not in out
+    assert "verdicts" not in out
     assert main(["compare", str(runs[0]), str(runs[0])]) == 0
-    assert "verdicts: all 2 as before" in capsys.readouterr().out
+    assert "verdicts of the whole runs: all 2 the same" in capsys.readouterr().out
     assert main(["compare", *map(str, runs), "--out", str(tmp_path / "no/where.json")]) == 2
     assert "cannot write" in capsys.readouterr().err
 

@@ -8,8 +8,9 @@ import pytest
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.film import Film, overview_camera
 from mjmr.film_options import FilmOptions
+from mjmr.geometry import Pinhole
 from mjmr.kinematics import KinematicSimulation
-from mjmr.overlay import View, draw_ring
+from mjmr.overlay import draw_ring
 from mjmr.recording import Recording
 from mjmr.render import Renderer
 from mjmr.simulation import Simulation
@@ -57,7 +58,7 @@ def test_projection_puts_overlays_where_things_are_drawn():
     camera = overview_camera(world.bounds, 640 / 480, simulation.model)
     with Renderer(simulation.model, 640, 480) as renderer:
         picture = renderer.picture(simulation.data, camera)
-        view = View(*renderer.view(), 640, 480)
+        view = renderer.view()
     yellow = cv2.inRange(cv2.cvtColor(picture, cv2.COLOR_RGB2HSV), (22, 150, 120), (32, 255, 255))
     for x, y in ((-1.0, 0.8), (1.3, -1.1)):
         u, v = view.project(np.array([x, y, 0.1538]))
@@ -76,9 +77,9 @@ def test_everything_of_the_world_is_inside_the_overview():
         with Renderer(model, width, height) as renderer:
             simulation = Simulation(world)
             renderer.picture(simulation.data, overview_camera(world.bounds, width / height, model))
-            view = View(*renderer.view(), width, height)
+            view = renderer.view()
         x0, y0, x1, y1 = world.bounds
-        corners = view.ground(np.array([[x0, y0], [x0, y1], [x1, y0], [x1, y1]]))
+        corners = view.on_floor(np.array([[x0, y0], [x0, y1], [x1, y0], [x1, y1]]))
         assert (corners > 0).all()
         assert (corners < [width, height]).all()
 
@@ -90,7 +91,7 @@ def test_goals_are_drawn_into_the_picture_and_missing_ones_are_not():
     before = film.still(0.0)
     assert (with_goals != before).any()
     blank = np.zeros((50, 50, 3), np.uint8)
-    view = View(np.array([0, 0, 2.0]), np.diag([1.0, -1.0, -1.0]), 50.0, 50, 50)
+    view = Pinhole(np.array([0, 0, 2.0]), np.diag([1.0, -1.0, -1.0]), 50.0, 50, 50)
     draw_ring(blank, view, np.array([np.nan, 0.0]), 0.1, (255, 255, 255))
     assert not blank.any()
     draw_ring(blank, view, np.array([0.0, 0.0]), 0.1, (255, 255, 255))

@@ -53,8 +53,9 @@ def test_a_touch_too_brief_for_the_samples_is_not_missed():
         pose[0] = [-2.0 * offset, reach - deep, 0.0]
         pose[1, 0] = 2.0 * offset
         start = np.array([[2.0, 0, 0], [-2.0, 0, 0]])
-        pairs, deepest, _ = overlap(
-            pose, start, start, np.array([0.09, 0.09]), np.zeros((0, 5)),
+        none = np.zeros((0, 5))
+        pairs, deepest, _, _ = overlap(
+            pose, start, start, np.array([0.09, 0.09]), np.zeros(2, dtype=bool), none, none,
             np.array([-9.0, -9, 9, 9]), 1 / 60, 8,
         )  # fmt: skip
         assert deepest == pytest.approx(deep, rel=1e-6)

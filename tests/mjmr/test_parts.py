@@ -259,6 +259,22 @@ def test_a_function_that_builds_an_object_without_the_method_is_told():
         mover(1, 1.0, None)
 
 
+def test_a_method_a_class_may_have_must_fit_if_it_is_there():
+    turn = Method(name="turn", arguments=("angle",), returns=("n",), unit="rad", optional=True)
+    part = replace(PART, methods=(*PART.methods, turn))
+    source = "class Nav:\n def __init__(s, *a): ...\n def step(s, p): return p\n"
+
+    def mover(more=""):
+        return Parts([part], [PartChoice("mover", "x.py:Nav", source + more)])["mover"](2, 1.0, 0)
+
+    assert not hasattr(mover(), "turn")
+    np.testing.assert_array_equal(mover(" def turn(s, a): return a").turn([0.0, 1.0]), [0.0, 1.0])
+    with pytest.raises(PartError, match="its method turn takes"):
+        mover(" def turn(s): ...")
+    with pytest.raises(PartError, match="turn must return finite floats of shape"):
+        mover(" def turn(s, a): return a").turn([0.0])
+
+
 def test_a_part_that_changes_what_it_gets_or_gave_does_no_harm():
     source = "class Nav:\n def __init__(s, *a): ...\n def step(s, p):\n  p += 1.0\n  return p\n"
     mover = Parts([PART], [PartChoice("mover", "x.py:Nav", source)])["mover"](2, 1.0, None)
