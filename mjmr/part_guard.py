@@ -142,7 +142,7 @@ class Guard:
             return function(*arguments)
         except MissingGLError:
             raise
-        except Exception as e:
+        except (Exception, SystemExit) as e:  # a part that exits shall not end its worker
             words = " ".join(f"{type(e).__name__}: {e}".split())
             told = f"{self._told} raised in {what} {when()}".rstrip()
             raise PartError(f"{told}: {words}") from e

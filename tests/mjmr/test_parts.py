@@ -238,6 +238,8 @@ def test_an_error_inside_a_swapped_part_names_it_and_shows_its_lines(here):
     )
     assert 'File "drift.py", line 12, in step' in traceback
     assert "return position[self.k + 1]['x']" in traceback
+    told = "raised in step at tick 0 (0.000 s): SystemExit: 3"
+    assert told in fail(here, "__import__('sys').exit(3)")[0]
     (here / "drift.py").write_text("class Drift:\n def __init__(s, *a): [][1]\n def step(s, p): 0")
     choice = parse_choices(["mover=drift.py:Drift"])
     error = compute(Job(TOY, choice), CONDITION, 0).error
