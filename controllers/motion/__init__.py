@@ -2,7 +2,6 @@
 
 from controllers.motion.errt import ErrtConfig, Plan, Planner
 from controllers.motion.frames import body_twist, world_velocity
-from controllers.motion.moving import swept_boxes
 from controllers.motion.navigator import Navigator, NavigatorConfig
 from controllers.motion.plane import along_perpendicular, synchronised
 from controllers.motion.prediction import Piece, forward_predict, predict
@@ -22,7 +21,6 @@ __all__ = [
     "forward_predict",
     "predict",
     "profile",
-    "swept_boxes",
     "synchronised",
     "world_velocity",
 ]

@@ -44,7 +44,7 @@ class NavigatorConfig:
             paper.
         strangers: Robots, by index, that do not take part: never commanded, expected to keep
             their velocity for ``foresight`` and to brake then; not in the paper.
-        foresight: See ``strangers`` [s]; about the time that braking from full speed takes.
+        foresight: See ``strangers`` [s]; boxes that move are expected to go on for as long.
 
     Raises:
         InvalidInputError: A value is outside its range.
@@ -243,23 +243,27 @@ class Navigator:
             )
         return command
 
-    def see_boxes(self, boxes: ArrayLike) -> None:
-        """Take in where the boxes are now; the next step keeps clear of them there.
+    def see_boxes(self, boxes: ArrayLike, velocity: ArrayLike) -> None:
+        """Take in where the boxes are and how they move; they are expected to go on like that.
 
         Args:
             boxes: As many as the navigator was made with, shape (k, 5): x, y, yaw, half-length,
-                half-width [m, rad]. Give one that moves the way it will go
-                (:func:`controllers.motion.moving.swept_boxes`).
+                half-width [m, rad].
+            velocity: Shape (k, 2) [m/s], world frame.
 
         Raises:
-            InvalidInputError: Another number of boxes, or one that is no box.
+            InvalidInputError: Another number of boxes, one that is no box, or velocities of
+                another shape or not finite.
         """
-        rows = prepare_boxes(boxes)
+        rows, drift = prepare_boxes(boxes), np.asarray(velocity, dtype=np.float64)
         if rows.shape != self._obstacles.shape:
             raise InvalidInputError(
                 f"boxes has {len(rows)} rows; the navigator was made with {len(self._obstacles)}"
             )
+        if drift.shape != (len(rows), 2) or not np.isfinite(drift).all():
+            raise InvalidInputError(f"velocity must be ({len(rows)}, 2) and finite")
         self._obstacles[:] = rows
+        self._search.drift[:] = drift
 
     def _checked(self, name: str, value: ArrayLike) -> NDArray[np.float64]:
         a = np.array(value, dtype=np.float64, order="C")  # compiled for arrays of its own

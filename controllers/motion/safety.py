@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from controllers.motion.approach import closest_approach
 from controllers.motion.clearance import TOLERANCE, point_rectangle, segment_rectangle, to_box
+from controllers.motion.moving import drifting_gap
 from controllers.motion.prediction import PIECES, fill_prediction
 from controllers.motion.streams import next_uniform
 from mjmr.jit import njit
@@ -32,12 +33,13 @@ class Search(NamedTuple):
     Attributes:
         bounds: Shape (4,): xmin, ymin, xmax, ymax [m] that the bodies stay within.
         boxes: Shape (k, 10), prepared.
+        drift: Shape (k, 2), their velocities [m/s], world frame.
         clearance: Radius of every robot and margin [m].
         fail_safe: Also stay clear of robots that chose before *and brake instead*: one that stops
             obeying in this very cycle is then not hit. Ours, not the paper's.
         stranger: Shape (n,) bool, robots that do not take part: expected to keep their velocity
             for ``foresight`` and to brake then. Ours, not the paper's.
-        foresight: See ``stranger`` [s].
+        foresight: See ``stranger``; boxes that move are expected to go on for as long [s].
         previous: Shape (n, 2) [m/s^2], world frame, accelerations chosen in the last cycle.
         streams: uint64, random streams; robot i uses ``first_stream + i``.
         first_stream: See ``streams``.
@@ -50,6 +52,7 @@ class Search(NamedTuple):
 
     bounds: NDArray[np.float64]
     boxes: NDArray[np.float64]
+    drift: NDArray[np.float64]
     clearance: float
     fail_safe: bool
     stranger: NDArray[np.bool_]
@@ -79,6 +82,7 @@ def make_search(
     return Search(
         bounds,
         boxes,
+        np.zeros((len(boxes), 2)),
         float(clearance),
         bool(fail_safe),
         stranger,
@@ -124,7 +128,7 @@ def reachable_box(speed, A, B, T):
 
 
 @njit
-def static_depth(rows, reach, required, tolerance, bounds, boxes):
+def static_depth(rows, reach, required, tolerance, bounds, boxes, drift, foresight):
     """How much too near a prediction comes to boxes and sides, summed over them [m].
 
     Args:
@@ -134,6 +138,8 @@ def static_depth(rows, reach, required, tolerance, bounds, boxes):
         tolerance: Shortfall [m] that counts as none.
         bounds: Shape (4,), sides of the field.
         boxes: Shape (k, 10), prepared.
+        drift: Shape (k, 2), their velocities [m/s].
+        foresight: How far boxes that move are looked at ahead, at least [s].
 
     The curved ramp lies in the triangle of its control points; the sides of that triangle stand
     for it, which is conservative by at most |c - v| T / 8. The rest is one straight segment.
@@ -163,6 +169,16 @@ def static_depth(rows, reach, required, tolerance, bounds, boxes):
         hx = boxes[k, 4]
         hy = boxes[k, 5]
         ux, uy = to_box(ax, ay, boxes, k)
+        vx = drift[k, 0]
+        vy = drift[k, 1]
+        if vx != 0.0 or vy != 0.0:
+            way = math.sqrt(vx * vx + vy * vy) * max(foresight, rows[3, 0])
+            if point_rectangle(ux, uy, hx, hy) - reach - way > required:
+                continue
+            gap = drifting_gap(rows, foresight, boxes, k, vx, vy)
+            if required - gap > tolerance:
+                depth += required - gap
+            continue
         if point_rectangle(ux, uy, hx, hy) - reach > required:
             continue
         wx, wy = to_box(qx, qy, boxes, k)
@@ -209,7 +225,16 @@ def command_depth(i, cx, cy, first_only, tolerance, position, velocity, dynamics
         dynamics.T,
         rows,
     )
-    depth = static_depth(rows, reach, search.clearance, tolerance, search.bounds, search.boxes)
+    depth = static_depth(
+        rows,
+        reach,
+        search.clearance,
+        tolerance,
+        search.bounds,
+        search.boxes,
+        search.drift,
+        search.foresight,
+    )
     apart = 2.0 * search.clearance
     for j in range(n):
         if first_only and depth > 0.0:
@@ -364,10 +389,11 @@ def _valid_candidate(i, position, velocity, desired, command, dynamics, search):
 def _least_deep(i, position, velocity, desired, dynamics, search):
     """Index of the candidate of least depth; of equal ones, that nearest to the desired command.
 
-    In contact with a robot, standing still ties with every way out and is nearest to a desired
-    command that leads further in. Unless the desired command leads out, or further out than
-    braking, the equal one that ends least deep in the other robots is therefore taken. Ours, not
-    the paper's: without it overlapped robots whose goals cross stay overlapped.
+    In contact, standing still ties with every way out and is nearest to a desired command that
+    leads further in. Unless the desired command leads out, or further out than
+    braking, the equal one that ends least deep is therefore taken. Ours, not the paper's: without
+    it overlapped robots whose goals cross stay overlapped, and one in the way of a box that moves
+    stays there.
     """
     candidates = search.candidates
     least = math.inf
@@ -410,8 +436,28 @@ def _least_deep(i, position, velocity, desired, dynamics, search):
 
 @njit
 def _overlap_at(i, rows, piece, search):
-    """Depth [m] in the others, summed, at the start of ``piece`` of all predictions."""
-    total = 0.0
+    """Depth [m] in others, boxes and sides, summed, at the start of ``piece`` of predictions.
+
+    Unlike the depth of a way, that of a point inside a box grows towards the box's middle.
+    """
+    x = rows[piece, 1]
+    y = rows[piece, 2]
+    side = min(
+        min(x - search.bounds[0], search.bounds[2] - x),
+        min(y - search.bounds[1], search.bounds[3] - y),
+    )
+    total = max(0.0, search.clearance - side)
+    for k in range(search.boxes.shape[0]):
+        t = rows[piece, 0]
+        if piece == PIECES - 1:
+            t = max(t, search.foresight)
+        ux, uy = to_box(x - search.drift[k, 0] * t, y - search.drift[k, 1] * t, search.boxes, k)
+        hx = search.boxes[k, 4]
+        hy = search.boxes[k, 5]
+        gap = point_rectangle(ux, uy, hx, hy)
+        if gap == 0.0:
+            gap = max(abs(ux) - hx, abs(uy) - hy)
+        total += max(0.0, search.clearance - gap)
     for j in range(search.chosen.shape[0] - 1):
         if j != i:
             dx = rows[piece, 1] - search.chosen[j, piece, 1]

@@ -98,9 +98,10 @@ study = Study(
                 ),
                 Method(
                     name="see_boxes",
-                    arguments=("boxes",),
+                    arguments=("boxes", "velocity"),
                     optional=True,
-                    doc="before a step, in scenes with carts: boxes (k, 5) as they are now",
+                    doc="before a step, in scenes with carts: boxes (k, 5) as they are now and "
+                    "their velocities (k, 2) [m/s]",
                 ),
             ),
             optional=(

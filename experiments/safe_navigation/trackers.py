@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controllers.estimation import PoseFilter, PoseFilterConfig
-from controllers.motion import swept_boxes, world_velocity
+from controllers.motion import world_velocity
 from mjmr.world import World
 
 Array = NDArray[np.float64]
@@ -95,15 +95,24 @@ class FilterTracker:
 
 
 class CartTracker:
-    """Fixed boxes and carts, these with the way they will go; carts keep their velocity."""
+    """Fixed boxes and carts; a filter expects the carts to keep their velocity.
 
-    def __init__(self, world: World, period: float, position_noise: float):
+    A cart that turns round does not. Its box is therefore longer by what its acceleration, known
+    as its size is, adds to its way in a stated time.
+
+    Attributes:
+        boxes: Shape (k, 5): x, y, yaw, half-length, half-width [m, rad].
+        velocity: Shape (k, 2) [m/s].
+    """
+
+    def __init__(self, world: World, period: float, position_noise: float, reaction: float):
         """Know where the boxes are, of the carts where their ways are.
 
         Args:
             world: With a report of its carts mounted.
             period: Control period [s].
             position_noise: Deviation of reported positions [m].
+            reaction: Time in which a robot can stop [s].
         """
         config = PoseFilterConfig(
             position_noise=max(position_noise, 1e-4),
@@ -117,19 +126,16 @@ class CartTracker:
         self._filter, self._period = PoseFilter(len(carts), config), period
         self._report, self._fixed = world.sensors["cart_report"], world.boxes
         self._started = False
+        self._longer = np.array([[0.5 * cart.acceleration * reaction**2, 0.0] for cart in carts])
         self.boxes = np.concatenate([self._fixed, [cart.box(0.0) for cart in carts]])
+        self.velocity = np.zeros((len(self.boxes), 2))
 
-    def update(self, horizon: float) -> Array:
-        """Boxes (k, 5) to keep clear of, carts grown over where they will go.
-
-        Args:
-            horizon: How far ahead [s].
-        """
-        report = self._report.read()
+    def update(self) -> None:
+        """Take in the newest report."""
+        report, count = self._report.read(), len(self._fixed)
         if self._started:
             self._filter.predict(self._filter.twist, self._period)
         self._filter.update(report[:, :3])
         self._started = True
-        now = np.column_stack([self._filter.pose, report[:, 3:]])
-        self.boxes = np.concatenate([self._fixed, swept_boxes(now, self._filter.velocity, horizon)])
-        return self.boxes
+        self.boxes[count:] = np.column_stack([self._filter.pose, report[:, 3:] + self._longer])
+        self.velocity[count:] = self._filter.velocity

@@ -16,7 +16,9 @@ from mjmr.metrics import ContactMeter, OverlapMeter
 from mjmr.parts import Parts
 
 PERIOD = 1 / 60
-HORIZON = 0.35  # [s]: braking from 2 m/s at 6 m/s^2, and a cycle
+# [s]: a stranger is foreseen as long as braking takes; a cart, longer, since it comes to robots at
+# rest, which must have got out of its way
+FORESIGHT, CART_FORESIGHT = 0.35, 0.7
 Metrics = dict[str, float | int]
 
 
@@ -59,10 +61,11 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
         fail_safe=condition["fail_safe"],
         motion=condition["motion"],
         strangers=scene.strangers if condition["foresee"] else (),
+        foresight=CART_FORESIGHT if scene.carts else FORESIGHT,
     )
     carts = None
     if scene.carts:
-        carts = CartTracker(world, PERIOD, condition["sigma_mm"] / 1000.0)
+        carts = CartTracker(world, PERIOD, condition["sigma_mm"] / 1000.0, FORESIGHT)
     boxes = carts.boxes if carts else world.boxes
     navigator = parts["navigator"](
         world.bounds, boxes, robots.n, config, simulation.rng("navigator")
@@ -70,7 +73,7 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
     pilot = Pilot(
         scene, world.bounds, navigator, config, tracker, condition["latency"], condition["predict"]
     )
-    see_boxes = getattr(navigator, "see_boxes", lambda boxes: None)
+    see_boxes = getattr(navigator, "see_boxes", lambda boxes, velocity: None)
     motion = _Motion(simulation, robots) if condition["scene"] == "straight" else None
     simulation.caption = lambda: _caption(meter)
 
@@ -80,7 +83,8 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
         report, sampled_at = robots.localizer.read(), robots.localizer.sampled_at
         hearing = robots.acknowledged & ~robots.stopping(now)
         if carts:
-            see_boxes(carts.update(HORIZON))
+            carts.update()
+            see_boxes(carts.boxes, carts.velocity)
         command = pilot.step(now, report, sampled_at, robots.executed, hearing)
         spent[k] = pilot.seconds
         robots.drive(command)

@@ -10,6 +10,7 @@ from tests.controllers.motion.scenes import BOUNDS, PERIOD, RADIUS, box_distance
 B, A, T = 6.0, 3.0, PERIOD
 BOX = np.array([[0.3, 0.1, 0.4, 0.3, 0.2]])
 N = 5
+STILL = np.zeros((1, 2))
 
 
 def brake(v):
@@ -120,7 +121,7 @@ def test_static_depth_is_conservative_by_at_most_the_ramp_s_sag():
         p, v = rng.uniform(-0.6, 0.9, 2), rng.uniform(-2, 2, 2)
         c = v + rng.uniform(-0.1, 0.1, 2)
         reach = fill_prediction(*p, *v, *c, B, T, rows)
-        got = static_depth(rows, reach, RADIUS, 1e-12, BOUNDS, prepared)
+        got = static_depth(rows, reach, RADIUS, 1e-12, BOUNDS, prepared, STILL, 0.7)
         true = max(0.0, RADIUS - box_distance(stop_path(p, v, c, inside=400), BOX[0]).min())
         assert got >= true - 1e-12
         # 400 samples a cycle miss the nearest point by at most 0.05 mm.
@@ -132,7 +133,9 @@ def test_static_depth_is_conservative_by_at_most_the_ramp_s_sag():
 def test_static_depth_adds_up_sides_that_are_passed():
     rows = np.empty((PIECES, 7))
     reach = fill_prediction(2.70, 2.15, 0.0, 0.0, 0.0, 0.0, B, T, rows)
-    depth = static_depth(rows, reach, RADIUS, 1e-12, BOUNDS, prepare_boxes(None))
+    depth = static_depth(
+        rows, reach, RADIUS, 1e-12, BOUNDS, prepare_boxes(None), np.zeros((0, 2)), 0.7
+    )
     assert depth == pytest.approx(0.04 + 0.04, abs=1e-12)
 
 
