@@ -31,6 +31,10 @@ class UnknownNameError(InvalidInputError):
         super().__init__(f"unknown {kind} {str(name)!r}; valid: {', '.join(ordered) or 'none'}")
 
 
+class PartError(MjmrError):
+    """What takes a role in a study cannot be loaded, or does not do what the role demands."""
+
+
 class TruthError(MjmrError):
     """Truth was read while a controller is to act."""
 

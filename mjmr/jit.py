@@ -33,9 +33,13 @@ def cache_folder() -> Path:
 def njit(function: Any = None, **options: Any) -> Any:
     """``numba.njit(cache=True, error_model="numpy")`` into :func:`cache_folder`.
 
+    What has no file is not cached: a part that travels as text is compiled by every process.
+
     No fast-math and no parallel threads: the same input gives the same bits everywhere.
     """
     if function is None:
         return functools.partial(njit, **options)
     config.CACHE_DIR = str(cache_folder())  # pyright: ignore[reportAttributeAccessIssue]
-    return numba.njit(cache=True, error_model="numpy", **options)(function)
+    # A module built from text has no file, and its text may be newer or older than one on disk.
+    cache = "__file__" in function.__globals__
+    return numba.njit(cache=cache, error_model="numpy", **options)(function)

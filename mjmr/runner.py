@@ -5,6 +5,7 @@ What a run leaves in its folder: ``results.sqlite`` (every trial), ``claims.json
 """
 
 import contextlib
+import dataclasses
 import os
 import shlex
 import shutil
@@ -22,7 +23,7 @@ from mjmr.conditions import parse_filter
 from mjmr.errors import GL_ADVICE, InvalidInputError, MissingGLError, MjmrError
 from mjmr.files import write_atomically
 from mjmr.film_options import FilmOptions
-from mjmr.parts import Job
+from mjmr.parts import Job, PartChoice
 from mjmr.progress import Progress, doing, say, standard_output
 from mjmr.registry import load_study
 from mjmr.store import Outcome, Store, is_of, set_aside
@@ -49,7 +50,8 @@ class RunOptions:
         seeds: Seeds of every condition; None takes what the size declares.
         workers: Processes; None takes one for each CPU this process may use.
         only: Conditions as texts ``key=value[,value...]``.
-        out: Results folder; None takes ``renders/STUDY/SIZE`` under the current folder.
+        parts: What takes a role in place of the study's own.
+        out: Results folder; None takes that of :func:`default_folder`.
         film: Make the film if it is not there.
         check: Compare verdicts with the committed ones.
         accept: Write verdicts as the committed ones.
@@ -66,6 +68,7 @@ class RunOptions:
     seeds: int | None = None
     workers: int | None = None
     only: tuple[str, ...] = ()
+    parts: tuple[PartChoice, ...] = ()
     out: Path | None = None
     film: bool = True
     check: bool = False
@@ -84,6 +87,11 @@ class RunOptions:
                 raise InvalidInputError(
                     f"{flag} takes a whole size, since verdicts are committed for whole sizes: "
                     "leave out --only and --seeds"
+                )
+            if given and self.parts:
+                raise InvalidInputError(
+                    f"{flag} takes the published parts, since verdicts are committed for them: "
+                    "leave out --with"
                 )
 
 
@@ -107,8 +115,9 @@ class RunResult:
 
 
 def default_folder(study: Study, size: str) -> Path:
-    """``renders/STUDY/SIZE`` under the current folder."""
-    return Path("renders") / study.name / size
+    """``renders/STUDY/SIZE`` under the current folder, with ``+ROLE=Class`` for chosen parts."""
+    chosen = "".join(f"+{c.role}={c.name}" for c in sorted(study.chosen, key=lambda c: c.role))
+    return Path("renders") / study.name / f"{size}{chosen}"
 
 
 def run_study(
@@ -133,7 +142,7 @@ def run_study(
     from mjmr import verdicts as committed
 
     messages = messages or Console(stderr=True)
-    study = load_study(options.study)
+    study = load_study(options.study).choose(options.parts)
     only = parse_filter(study.parameters, options.only)
     trials = study.trials(options.size, options.seeds, only)
     claims = study.load_claims()
@@ -204,8 +213,11 @@ class _Run:
 
         return {
             "digest": self.study.digest(self.options.size),
+            "digest_of_published": self.study.choose(()).digest(self.options.size),
             "study": self.study.name,
+            "reference": self.options.study,
             "size": self.options.size,
+            "parts": [dataclasses.asdict(choice) for choice in self.study.chosen],
             "versions": versions(),
             "git_revision": git_revision(),
         }
@@ -256,7 +268,7 @@ class _Run:
         """Write claims, and plots of the trials asked for; returns what went wrong."""
         from mjmr import reports
 
-        title = f"{self.study.name}, size {self.options.size}: {self.study.title}"
+        title = f"{_told(self.study, self.options.size)}: {self.study.title}"
         write_atomically(self.folder / "claims.json", reports.verdicts_json(verdicts))
         write_atomically(self.folder / "claims.md", reports.verdicts_markdown(verdicts, title))
         plots = self.study.plots
@@ -333,6 +345,7 @@ class _Run:
         words += ["--seeds", str(o.seeds)] if o.seeds is not None else []
         words += ["--workers", str(o.workers)] if o.workers is not None else []
         words += ["--only", *o.only] if o.only else []
+        words += ["--with", *map(str, o.parts)] if o.parts else []
         words += ["--out", str(o.out)] if o.out is not None else []
         words += [f"--{n}" for n in ("check", "accept", "retry") if getattr(o, n)]
         words += [] if o.film else ["--no-film"]
@@ -352,6 +365,12 @@ def _row(trial: Trial, outcome: Outcome | None) -> Row:
     return Row(condition, seed, outcome.status, metrics, outcome.error)
 
 
+def _told(study: Study, size: str) -> str:
+    """What was run, as titles say it."""
+    swapped = "".join(f", with {choice}" for choice in study.chosen)
+    return f"{study.name}, size {size}{swapped}"
+
+
 def _print_verdicts(
     console: "Console | None", study: Study, size: str, verdicts: Sequence[Verdict]
 ) -> None:
@@ -359,7 +378,7 @@ def _print_verdicts(
 
     console = console or standard_output(140)
     if verdicts:
-        console.print(verdict_table(verdicts, f"{study.name}, size {size}", size))
+        console.print(verdict_table(verdicts, _told(study, size), size))
         if line := undecided_line(verdicts, size):
             console.print(line, style="dim")
 

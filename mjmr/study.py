@@ -26,6 +26,7 @@ from mjmr.conditions import (
 )
 from mjmr.errors import InvalidInputError, MjmrError, UnknownNameError
 from mjmr.parts import Part, PartChoice, Parts
+from mjmr.watch import watching
 
 if TYPE_CHECKING:
     from mjmr.claims import Claim
@@ -182,15 +183,22 @@ class Study:
         return resolve(getattr(self, role))
 
     def choose(self, choices: Sequence[PartChoice]) -> "Study":
-        """This study with other classes in some of its roles.
+        """This study with other classes in some of its roles, loaded and checked.
 
         Raises:
             UnknownNameError: A choice for a role that is not declared; lists those there are.
+            PartError: A class that cannot be loaded or cannot take its role.
         """
         roles = [part.role for part in self.parts]
         for choice in choices:
+            if not roles:
+                raise InvalidInputError(
+                    f"study {self.name} declares no parts, so {choice} has nothing to take"
+                )
             if choice.role not in roles:
                 raise UnknownNameError("part", choice.role, roles)
+        taken = {choice.role for choice in choices}
+        Parts([part for part in self.parts if part.role in taken], choices)
         return dataclasses.replace(self, chosen=tuple(choices))
 
     def bound_trial(self) -> Callable[..., Any]:
@@ -202,7 +210,15 @@ class Study:
         function = self.resolve("trial")
         if not self.parts:
             return function
-        return functools.partial(function, parts=Parts(self.parts, self.chosen))
+        if not self.chosen:
+            return functools.partial(function, parts=Parts(self.parts))
+
+        def watched(condition: Condition, seed: int) -> Any:
+            parts = Parts(self.parts, self.chosen)
+            with watching(parts.watch):  # errors of a part name tick and time
+                return function(condition, seed, parts=parts)
+
+        return watched
 
     def load_claims(self) -> "list[Claim]":
         """The claims.
@@ -235,7 +251,11 @@ class Study:
             raise MjmrError(f"cannot read committed verdicts {self.verdicts}: {e}") from e
 
     def digest(self, size: str) -> str:
-        """SHA-256 of all a result of this size depends on: declaration, sources, versions."""
+        """SHA-256 of all a result of this size depends on: declaration, sources, versions.
+
+        Parts that were chosen count with their source.
+        """
+        from mjmr.part_sources import choice_digest
         from mjmr.provenance import source_digest, versions
 
         declared = self.size(size)
@@ -250,6 +270,7 @@ class Study:
             "sources": source_digest(*packages) if packages else "",
             "assets": _asset_digest() if "mjmr" in packages else "",
             "versions": versions(),
+            "chosen": sorted(choice_digest(choice) for choice in self.chosen),
         }
         return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
 

@@ -1,5 +1,6 @@
 """The README's script and the pages of docs/ are run, not only read."""
 
+import json
 import os
 import re
 import subprocess
@@ -46,26 +47,56 @@ def test_the_readme_script_runs_and_makes_a_film(tmp_path):
         assert stream.frames >= 5 * 30
 
 
-@pytest.mark.slow
-def test_the_page_on_adding_a_system_runs(tmp_path):
-    page = ROOT / "docs" / "add-a-system.md"
+def write_files(page, folder):
+    """Write every Python block of a page to the file it names."""
     for block in blocks(page, "python"):
         name = re.match(r"# file: (\S+)\n", block)
         assert name, "every Python block of this page is a file"
-        path = tmp_path / name[1]
+        path = folder / name[1]
         path.parent.mkdir(exist_ok=True)
         path.write_text(block)
-    commands = [b for b in blocks(page, "sh") if "mjmr run" in b]
-    assert len(commands) == 1
-    shell = commands[0].replace("--size standard --only gain=2.0", "--seeds 1 --out again")
+
+
+def run_shell(text, folder):
     done = run(
-        ["bash", "-euo", "pipefail", "-c", shell],
-        tmp_path,
+        ["bash", "-euo", "pipefail", "-c", text],
+        folder,
         PATH=f"{Path(sys.executable).parent}:{os.environ['PATH']}",
     )
     assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.mark.slow
+def test_the_page_on_adding_a_system_runs(tmp_path):
+    page = ROOT / "docs" / "add-a-system.md"
+    write_files(page, tmp_path)
+    commands = [b for b in blocks(page, "sh") if "mjmr run" in b]
+    assert len(commands) == 1
+    run_shell(
+        commands[0].replace("--size standard --only gain=2.0", "--seeds 1 --out again"), tmp_path
+    )
     claims = (tmp_path / "renders" / "rendezvous" / "quick" / "claims.json").read_text()
     assert '"verdict": "holds"' in claims
+
+
+@pytest.mark.slow
+def test_the_page_on_swapping_a_part_runs_and_the_swapped_part_loses(tmp_path):
+    page = ROOT / "docs" / "swap-a-part.md"
+    write_files(page, tmp_path)
+    (shell,) = blocks(page, "sh")
+    out = run_shell(f"{shell.rstrip()} --out found.json", tmp_path)
+    found = json.loads((tmp_path / "found.json").read_text())
+    assert found["pairs"] == 12
+    assert (found["a"]["failed"], found["b"]["failed"]) == (0, 0)
+    (overlap,) = [row for row in found["metrics"] if row["metric"] == "overlap_mm_s"]
+    assert overlap["a"] == 0.0
+    assert overlap["low"] > 50.0
+    assert overlap["p"] < 0.01
+    assert found["verdicts_changed"]["zero-cross4"] == {"a": "holds", "b": "fails"}
+    printed = {tuple(line.split()[:2]) for line in out.splitlines()}
+    for line in blocks(page, "text")[0].splitlines():
+        assert tuple(line.split()[:2]) in printed, line
 
 
 def test_every_committed_picture_the_readme_shows_is_there():

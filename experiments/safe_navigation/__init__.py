@@ -8,7 +8,7 @@ from pathlib import Path
 
 from experiments.safe_navigation.sizes import FULL, QUICK, STANDARD
 from mjmr.conditions import Parameter
-from mjmr.parts import Part
+from mjmr.parts import Method, Part
 from mjmr.study import Study
 
 _HERE = "experiments.safe_navigation"
@@ -109,6 +109,28 @@ study = Study(
             role="navigator",
             doc="velocities of all robots from their positions, velocities and goals",
             default="controllers.motion:Navigator",
+            constructor=("bounds", "boxes", "n", "config", "rng"),
+            methods=(
+                Method(
+                    name="step",
+                    arguments=("position", "velocity", "goals", "active"),
+                    returns=("n", 2),
+                    unit="m/s, world frame",
+                    doc="every cycle; position, velocity and goals (n, 2) [m, m/s, m], world "
+                    "frame, and active (n,) bool, who obeys",
+                ),
+                Method(
+                    name="see_boxes",
+                    arguments=("boxes", "velocity"),
+                    optional=True,
+                    doc="before a step, in scenes with carts: boxes (k, 5) as they are now and "
+                    "their velocities (k, 2) [m/s]",
+                ),
+            ),
+            optional=(
+                "waypoints (n, 2) [m], world frame: drawn in films; the goals if there are none",
+                "sampled (n,) bool: robots whose wish was overruled; none if absent",
+            ),
         ),
     ),
     verdicts=Path(__file__).with_name("verdicts.json"),

@@ -70,7 +70,7 @@ class Pilot:
         Args:
             scene: Starts and goals.
             bounds: Of the world (4,) [m].
-            navigator: Takes the part of :class:`controllers.motion.Navigator`.
+            navigator: The navigator; of it only ``step`` is called.
             config: What the navigator was made with.
             tracker: Turns reports into positions and velocities.
             latency: Cycles from a command to its execution.

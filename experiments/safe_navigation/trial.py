@@ -80,6 +80,7 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
     pilot = Pilot(
         scene, world.bounds, navigator, config, tracker, condition["latency"], condition["predict"]
     )
+    see_boxes = getattr(navigator, "see_boxes", lambda boxes, velocity: None)
     motion = _Motion(simulation, robots) if condition["scene"] == "straight" else None
     simulation.caption = lambda: _caption(meter)
 
@@ -90,15 +91,15 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
         hearing = robots.acknowledged & ~robots.stopping(now)
         if carts:
             carts.update()
-            navigator.see_boxes(carts.boxes, carts.velocity)
+            see_boxes(carts.boxes, carts.velocity)
         command = pilot.step(now, report, sampled_at, robots.executed, hearing)
         spent[k] = pilot.seconds
         robots.drive(command)
-        sampled += int(navigator.sampled.sum())
+        sampled += int(np.count_nonzero(getattr(navigator, "sampled", False)))
         if simulation.noted:
-            simulation.note(
-                goals=pilot.shuttle.goals, waypoints=navigator.waypoints, stops=pilot.stops
-            )
+            goals = pilot.shuttle.goals
+            waypoints = getattr(navigator, "waypoints", goals)
+            simulation.note(goals=goals, waypoints=waypoints, stops=pilot.stops)
 
     each = 1e6 * spent / robots.n
     return {

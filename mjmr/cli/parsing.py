@@ -5,12 +5,15 @@ import io
 import re
 import textwrap
 from collections.abc import Sequence
-from typing import Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import tyro
-from tyro.conf import Positional, arg
+from tyro.conf import Positional, UseAppendAction, arg
 
 from mjmr.errors import InvalidInputError
+
+if TYPE_CHECKING:
+    from mjmr.parts import PartChoice
 
 T = TypeVar("T")
 
@@ -23,10 +26,35 @@ SizeName = Annotated[
 ]
 
 
-def option(metavar: str, text: str, default: str | None = None) -> Any:
-    """Declare an option: what its value is called, what it means, the default in words."""
+def option(metavar: str, text: str, default: str | None = None, name: str | None = None) -> Any:
+    """Declare an option: what its value is called, what it means, the default in words, its name.
+
+    The name is needed where it is not the field's.
+    """
     hint = "" if default is None else f"(default: {default})"
-    return arg(metavar=metavar, help=text, help_behavior_hint=hint)
+    return arg(metavar=metavar, help=text, help_behavior_hint=hint, name=name)
+
+
+PartTexts = Annotated[
+    UseAppendAction[tuple[tuple[str, ...], ...]],
+    option(
+        "ROLE=REFERENCE",
+        "Let another class take a role: package.module:Class or file.py:Class; repeatable.",
+        "the published parts",
+        name="with",
+    ),
+]
+
+
+def part_choices(given: tuple[tuple[str, ...], ...]) -> "tuple[PartChoice, ...]":
+    """What an option of type `PartTexts` chose.
+
+    Raises:
+        MjmrError: As for :func:`mjmr.part_sources.parse_choices`.
+    """
+    from mjmr.part_sources import parse_choices
+
+    return parse_choices(text for texts in given for text in texts)
 
 
 def parse(command: type[T], name: str, arguments: Sequence[str], more_help: str) -> T:

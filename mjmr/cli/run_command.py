@@ -5,7 +5,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-from mjmr.cli.parsing import SizeName, StudyName, option, parse, whole_number
+from mjmr.cli.parsing import (
+    PartTexts,
+    SizeName,
+    StudyName,
+    option,
+    parse,
+    part_choices,
+    whole_number,
+)
 
 _MORE = """
 EXAMPLES
@@ -13,6 +21,7 @@ EXAMPLES
   mjmr run safe-navigation --size standard --workers 8
   mjmr run safe-navigation --only scene=A sigma_mm=0,4 --seeds 10 --out renders/try
   mjmr run safe-navigation --size standard --check
+  mjmr run safe-navigation --with navigator=dash.py:Dash
 
 FILES, in renders/STUDY/SIZE or --out
   results.sqlite   every trial: condition, seed, status, metrics; wall times in a table of their own
@@ -20,6 +29,10 @@ FILES, in renders/STUDY/SIZE or --out
   claims.md        the same as a table
   run.json         what was run: digest, versions, git revision, conditions, wall time
   *.svg, film.mp4  plots, and the film unless it is there already
+
+SWAPPING A PART
+  mjmr show STUDY lists the roles and what a class of each must offer. Results with swapped parts
+  go to renders/STUDY/SIZE+ROLE=Class; mjmr compare sets them against the published ones.
 
 RESUMING
   Every finished trial is on disk at once. After Ctrl-C or a crash the same command goes on where
@@ -57,6 +70,7 @@ class Run:
         tuple[str, ...],
         option("KEY=VALUE[,VALUE...]", "Run conditions with these values only.", "all"),
     ] = ()
+    with_: PartTexts = ()
     out: Annotated[Path | None, option("DIR", "Results folder.", "renders/STUDY/SIZE")] = None
     film: Annotated[bool, option("", "Make no film.", "make it")] = True
     check: Annotated[bool, option("", "Compare verdicts with the committed ones.", "no")] = False
@@ -73,6 +87,7 @@ def main(arguments: Sequence[str]) -> int:
     """Run a study."""
     a = parse(Run, "run", arguments, _MORE)
     seeds, workers = whole_number("--seeds", a.seeds), whole_number("--workers", a.workers)
+    parts = part_choices(a.with_)
     from mjmr.runner import RunOptions, run_study
 
     options = RunOptions(
@@ -81,6 +96,7 @@ def main(arguments: Sequence[str]) -> int:
         seeds=seeds,
         workers=workers,
         only=a.only,
+        parts=parts,
         out=a.out,
         film=a.film,
         check=a.check,

@@ -20,10 +20,11 @@ EXIT CODES
 
 @dataclass(frozen=True)
 class Show:
-    """Show a study: its paper, conditions, sizes and claims.
+    """Show a study: its paper, conditions, sizes, parts and claims.
 
-    Conditions are what --only of mjmr run takes. Sizes are shown with their number of trials and
-    the wall time expected on two cores; claims with their bounds and the sizes that decide them.
+    Conditions are what --only of mjmr run takes, parts what --with takes. Sizes are shown with
+    their number of trials and the wall time expected on two cores; parts with what a class must
+    offer to take one; claims with their bounds and the sizes that decide them.
     """
 
     study: StudyName
@@ -41,6 +42,8 @@ def main(arguments: Sequence[str]) -> int:
     show(Text(f"{study.paper}\n\n{study.summary}\n"))
     show(_conditions(study))
     show(_sizes(study))
+    if study.parts:
+        show(_parts(study))
     show(_claims(claims))
     return 0
 
@@ -73,6 +76,18 @@ def _sizes(study: Study) -> Any:
         trials = study.trials(size.name)
         conditions = len({condition for condition, _ in trials})
         _row(table, size.name, conditions, len(trials), f"{size.expected_minutes:g}", size.note)
+    return table
+
+
+def _parts(study: Study) -> Any:
+    table = _table("Parts, for --with of mjmr run", "role", "what it does", "published", "a class")
+    table.show_lines = True
+    for part in study.parts:
+        has = [] if part.constructor is None else [f"__init__({', '.join(part.constructor)})"]
+        for m in part.methods:
+            has.append(f"{'may have ' * m.optional}{m}{': ' * bool(m.doc)}{m.doc}")
+        has += [f"may have {text}" for text in part.optional]
+        _row(table, part.role, part.doc, part.default, "\n".join(has))
     return table
 
 

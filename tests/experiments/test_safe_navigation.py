@@ -15,6 +15,8 @@ from experiments.safe_navigation.scenes import scene
 from experiments.safe_navigation.trackers import FilterTracker, RawTracker
 from experiments.safe_navigation.worlds import build
 from mjmr.errors import TruthError
+from mjmr.parts import PartChoice
+from mjmr.recording import record
 from mjmr.watch import watching
 
 trial = study.bound_trial()
@@ -217,3 +219,25 @@ def test_one_worker_and_two_give_identical_metrics():
         for c, s in trials
     }
     assert {k: json.loads(v) for k, v in one.items()} == here
+
+
+STAND = """
+class Stand:
+    def __init__(self, bounds, boxes, n, config, rng):
+        self.told = (bounds.shape, boxes.shape[1:], n, config.period)
+
+    def step(self, position, velocity, goals, active):
+        assert self.told == ((4,), (5,), len(position), 1 / 60)
+        assert position.shape == velocity.shape == goals.shape == (*active.shape, 2)
+        return 0 * position
+"""
+
+
+@pytest.mark.parametrize("scene", ["A", "cross4", "carts"])
+def test_a_navigator_needs_a_constructor_and_a_step_alone(scene):
+    swapped = study.choose([PartChoice("navigator", "stand.py:Stand", STAND)])
+    condition = study.condition(scene=scene, latency=1, duration=1.0)
+    recording = record(swapped.bound_trial(), condition, 0)  # films ask for waypoints
+    assert np.ptp(recording.poses[:, :, :2], axis=0).max() == 0.0
+    metrics = swapped.bound_trial()(condition, 0)
+    assert (metrics["goals"], metrics["sampled_share"]) == (0, 0.0)

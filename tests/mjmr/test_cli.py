@@ -14,8 +14,9 @@ MAIN = "import sys; from mjmr.cli import main; sys.exit(main())"
 
 @pytest.fixture(autouse=True)
 def toys(monkeypatch, tmp_path):
-    entries = {"toy": "study", "toy-raise": "raising"}
-    told = " ".join(f"{name}=tests.toy_study:{where}" for name, where in entries.items())
+    entries = {"toy": "toy_study:study", "toy-raise": "toy_study:raising"}
+    entries["toy-parts"] = "toy_parts:study"
+    told = " ".join(f"{name}=tests.{where}" for name, where in entries.items())
     monkeypatch.setenv("MJMR_STUDIES", told)
     monkeypatch.delenv("MJMR_DEBUG", raising=False)
     monkeypatch.chdir(tmp_path)
@@ -25,7 +26,7 @@ BAD = {
     "": "a command is missing: list, show, run",
     "rum toy": "unknown command 'rum'; valid: run",
     "run": "missing from mjmr run: STUDY",
-    "run tyo": "unknown study 'tyo'; valid: toy, toy-raise",
+    "run tyo": "unknown study 'tyo'; valid: toy, toy-",
     "run toy extra": "unrecognized options: extra",
     "run toy --sise quick": "perhaps --size",
     "run toy --size": "missing value for argument '--size'",
@@ -47,6 +48,19 @@ BAD = {
     "run toy --check --accept": "--check and --accept exclude each other",
     "run toy --out file/below": "cannot",
     "run nowhere.at_all:study": "cannot load nowhere.at_all:study",
+    "run toy --with coin=tests.toy_parts:Full": "study toy declares no parts",
+    "run toy --with coin": "expected ROLE=package.module:Class or ROLE=path/to/file.py:Class, not",
+    "run toy-parts --with movr=tests.toy_parts:Full": "unknown part 'movr'; valid: mover",
+    "run toy-parts --with mover=gone.py:Full": "cannot read the file of gone.py:Full: No such file",
+    "run toy-parts --with mover=gone.there:Full": "cannot load gone.there:Full: ModuleNotFoundErr",
+    "run toy-parts --with mover=tests.toy_parts:study": "cannot be the mover: it is no class",
+    "run toy-parts --with mover=a.b:C --with mover=a.b:D": "mover is given twice",
+    "run toy-parts --with mover=a.b:C mover=a.b:D": "mover is given twice",
+    "run toy-parts --check --with mover=tests.toy_parts:Full": "--check takes the published parts",
+    "run toy-parts --accept --with mover=tests.toy_parts:Full": "--accept takes the published",
+    "compare": "missing from mjmr compare: RUN_A RUN_B",
+    "compare one": "missing from mjmr compare: RUN_B",
+    "compare one two": "no results in one; make them with mjmr run",
     "show": "missing from mjmr show: STUDY",
     "show toi": "unknown study 'toi'; valid: toy",
     "film toy --camera side": "unknown camera 'side'; valid: ",
@@ -97,6 +111,46 @@ def test_list_and_show(capsys):
     shown = capsys.readouterr().out
     for words in ("Ars Conjectandi", "0.0, 0.5, 0.9, 1.0", "standard", "82", "bias-shows", "> 0"):
         assert words in shown
+
+
+def test_show_lists_parts_and_what_they_demand(capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")
+    main(["show", "toy-parts"])
+    shown = capsys.readouterr().out
+    for words in (
+        "mover",
+        "velocities from positions",
+        "tests.toy_parts:Slow",
+        "__init__(n, speed, rng)",
+        "step(position) -> (n, 2) [m/s, world frame]",
+        "may have nothing: for nobody",
+    ):
+        assert words in shown
+    main(["show", "toy"])
+    assert "--with" not in capsys.readouterr().out
+
+
+def test_swap_a_part_and_compare(capsys, tmp_path, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "140")
+    words = ["run", "toy-parts", "--workers", "1", "--no-film"]
+    assert main(words) == 0
+    (tmp_path / "mine.py").write_text("from tests.toy_parts import Full\n\nclass Fast(Full): ...\n")
+    assert main([*words, "--with", "mover=mine.py:Fast"]) == 0
+    assert "results in renders/toy-parts/quick+mover=Fast" in capsys.readouterr().err
+    (tmp_path / "mine.py").unlink()
+    runs = ["renders/toy-parts/quick", "renders/toy-parts/quick+mover=Fast"]
+    assert main(["compare", *runs, "--by", "speed", "--out", "found.csv"]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert "B: renders/toy-parts/quick+mover=Fast (quick, mover=mine.py:Fast)" in out
+    (line,) = [line for line in out.splitlines() if "speed=0.4" in line and " way " in line]
+    told = " ".join(line.replace("│", " ").split())
+    # seven comparisons: three metrics twice, and one that slow robots alone have
+    assert told == "speed=0.4 way 0.4 0.8 +0.4 [0.4, 0.4] 8 0.0078* 0.055"
+    assert "verdicts of the whole runs: 1 of 2 differ, A -> B\n  slow: holds -> fails" in out
+    with (tmp_path / "found.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert {r["speed"] for r in rows} == {"0.4", "0.8"}
 
 
 def test_a_broken_study_does_not_hide_the_others(capsys, monkeypatch):
@@ -227,7 +281,8 @@ def test_every_example_in_the_helps_is_good_input(capsys):
             example = line.split()
             if example[:1] != ["mjmr"] or len(example) < 2 or example[1] not in COMMANDS:
                 continue
-            conditions = [w for w in example if "=" in w and not w.startswith(("MJMR", "KEY"))]
+            others = ("MJMR", "KEY", "navigator=")
+            conditions = [w for w in example if "=" in w and not w.startswith(others)]
             if "safe-navigation" in example:
                 parse_filter(load_study("safe-navigation").parameters, conditions)
                 seen += 1
