@@ -162,8 +162,8 @@ def _caption(meter: Any) -> str:
 class _Motion:
     """Realised speed, acceleration and braking of the first robot, from its true velocity.
 
-    Acceleration is the slope between 20 % and 80 % of 2 m/s while speed grows, braking the same
-    while it falls; averages over the passages of the run.
+    Acceleration is the slope from 20 % to 80 % of 2 m/s, braking that from 80 % to 20 %; averages
+    over the passages of the run.
     """
 
     def __init__(self, simulation: TickedSimulation, robots: Any):
@@ -181,21 +181,41 @@ class _Motion:
     def metrics(self) -> Metrics:
         """Speeds [m/s], accelerations [m/s^2] and yaw [deg] realised."""
         speed = np.array(self._speeds)
-        change = np.diff(speed) / self._period
-        inside = (np.minimum(speed[1:], speed[:-1]) > 0.4) & (
-            np.maximum(speed[1:], speed[:-1]) < 1.6
-        )
         return {
             "top_speed": float(speed.max()),
-            "acceleration": _mean(change[inside & (change > 0)]),
-            "braking": _mean(-change[inside & (change < 0)]),
+            "acceleration": slope(speed, 0.4, 1.6, self._period),
+            "braking": -slope(speed, 1.6, 0.4, self._period),
             "yaw_deg": float(np.degrees(self._yaw)),
         }
 
 
-def _mean(values: np.ndarray) -> float:
-    """Mean; NaN where the run was too short to have any."""
-    return float(values.mean()) if values.size else float("nan")
+def slope(speed: np.ndarray, start: float, end: float, period: float) -> float:
+    """Mean slope of the passages of ``speed`` from one level straight to another.
+
+    Args:
+        speed: Samples (k,) [m/s], ``period`` [s] apart.
+        start: [m/s].
+        end: [m/s].
+        period: [s].
+
+    Returns:
+        [m/s^2]; NaN where there is no passage.
+    """
+    first, last = _crossings(speed, start), _crossings(speed, end)
+    slopes = []
+    for k, moment in enumerate(first):
+        following = first[k + 1] if k + 1 < len(first) else np.inf
+        arrivals = [t for t in last if moment < t < following]
+        if arrivals:
+            slopes.append((end - start) / ((arrivals[0] - moment) * period))
+    return float(np.mean(slopes)) if slopes else float("nan")
+
+
+def _crossings(speed: np.ndarray, level: float) -> list[float]:
+    """Instants, in samples, at which ``speed`` passes ``level`` either way."""
+    below = speed < level
+    at = np.flatnonzero(below[1:] != below[:-1])
+    return [float(k + (level - speed[k]) / (speed[k + 1] - speed[k])) for k in at]
 
 
 def prepare() -> None:

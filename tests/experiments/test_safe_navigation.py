@@ -13,6 +13,7 @@ from experiments.safe_navigation import trial as module
 from experiments.safe_navigation.pilot import Shuttle
 from experiments.safe_navigation.scenes import scene
 from experiments.safe_navigation.trackers import FilterTracker, RawTracker
+from experiments.safe_navigation.trial import slope
 from experiments.safe_navigation.worlds import build
 from mjmr.errors import TruthError
 from mjmr.parts import PartChoice
@@ -241,3 +242,17 @@ def test_a_navigator_needs_a_constructor_and_a_step_alone(scene):
     assert np.ptp(recording.poses[:, :, :2], axis=0).max() == 0.0
     metrics = swapped.bound_trial()(condition, 0)
     assert (metrics["goals"], metrics["sampled_share"]) == (0, 0.0)
+
+
+def test_slopes_are_those_of_the_passages_whatever_ripples_on_them():
+    t = np.arange(0.0, 4.0, 1 / 60)
+    speed = np.interp(t, [0.0, 0.5, 1.166, 2.0, 2.333, 4.0], [0.0, 0.0, 2.0, 2.0, 0.0, 0.0])
+    for ripple in (0.0, 0.05):
+        rippled = speed + ripple * np.sin(2 * np.pi * 13 * t)
+        assert slope(rippled, 0.4, 1.6, 1 / 60) == pytest.approx(
+            3.0, rel=0.02 if not ripple else 0.1
+        )
+        assert slope(rippled, 1.6, 0.4, 1 / 60) == pytest.approx(
+            -6.0, rel=0.02 if not ripple else 0.15
+        )
+    assert np.isnan(slope(speed[:40], 0.4, 1.6, 1 / 60))

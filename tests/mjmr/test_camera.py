@@ -182,7 +182,7 @@ def test_a_camera_of_the_model_is_used_by_name(monkeypatch):
         Simulation(world)
 
 
-def _soccer_path(name):
+def _soccer_path(*_: str):
     from mjmr.assets import model_path
 
     return model_path("soccer_bot")
