@@ -125,11 +125,10 @@ def _limits(platform: Any) -> Limits:
 def filter_noises(condition: Mapping[str, Any]) -> PoseFilterConfig:
     """What the filter expects of reports and of bodies."""
     late = condition["sensing"] != "report"
-    slips = condition["drive"] == "omni"
     return PoseFilterConfig(
         position_noise=max(condition["sigma_mm"] / 1000.0, 1e-4),
         yaw_noise=YAW_NOISE if late else 1e-3,
-        speed_noise=0.05 if slips else 0.01,
+        speed_noise=0.01,
     )
 
 
