@@ -20,6 +20,7 @@ from mjmr.errors import GL_ADVICE, MissingGLError, UnknownNameError
 from mjmr.film_options import LOOKS
 from mjmr.geometry import Pinhole
 
+_LAMP_QUADS = 8  # pieces along each side of a flat shape
 # renderers set aside, with the threads that may free them
 _forgotten: list[tuple[int, mujoco.Renderer]] = []
 _open: "weakref.WeakSet[Renderer]" = weakref.WeakSet()
@@ -28,9 +29,7 @@ _open: "weakref.WeakSet[Renderer]" = weakref.WeakSet()
 class Renderer:
     """Renders RGB pictures; ``draft`` without shadows and anti-aliasing, ``fine`` with both."""
 
-    def __init__(
-        self, model: mujoco.MjModel, width: int, height: int, look: str = "draft", quads: int = 1
-    ):
+    def __init__(self, model: mujoco.MjModel, width: int, height: int, look: str = "draft"):
         """Open an off-screen context.
 
         Args:
@@ -38,7 +37,6 @@ class Renderer:
             width: [px].
             height: [px].
             look: One of ``LOOKS``.
-            quads: Pieces along each side of flat shapes in a draft; lamps shade only their corners.
 
         Raises:
             MissingGLError: No OpenGL; the message says what to install.
@@ -52,7 +50,10 @@ class Renderer:
         quality.offsamples = 4 if look == "fine" else 0
         if look == "draft":
             # in software half of the time went into the triangles of round shapes and the floor
-            quality.numslices, quality.numstacks, quality.numquads = 20, 6, quads
+            quality.numslices, quality.numstacks = 20, 6
+            # a lamp shades corners only, and what lies between is interpolated
+            lamps = model.light_type != mujoco.mjtLightType.mjLIGHT_DIRECTIONAL
+            quality.numquads = _LAMP_QUADS if lamps.any() else 1
         _free_forgotten()
         try:
             self._renderer = mujoco.Renderer(model, height, width)

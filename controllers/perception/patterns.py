@@ -17,10 +17,12 @@ from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.geometry import Pinhole, rotate, wrap_angle
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 Identity = tuple[str, int]
-# a dot's area as a share of what it should be; below, it is half hidden and its centroid is off
-_LEAST, _MOST = 0.5, 1.7
-_NEAR = 0.009  # m between a dot and where its robot should have it
+# areas of dots as shares of what they should be: below the second, something hides a part of the
+# dot and its middle is off, but its colour still tells
+_LEAST, _WHOLE, _MOST = 0.2, 0.7, 1.7
+_NEAR, _NEAR_PART = 0.009, 0.014  # m between a dot, whole or not, and where it should be
 _CLOSE = 0.45  # px; further off than this, a dot is left out of the pose if enough others are left
 _FEWEST = 3
 
@@ -130,25 +132,25 @@ class PatternFinder:
                 f"the camera's images are {shape} uint8; got {image.shape} {image.dtype}"
             )
         self._finder.look(image)
-        zeros, ones = (self._spots(bit, self._layout.dot_radius) for bit in (0, 1))
-        dots = np.concatenate([zeros, ones])
-        bits = np.repeat([0, 1], [len(zeros), len(ones)])
+        spots = [self._spots(bit, self._layout.dot_radius) for bit in (0, 1)]
+        dots, whole = (np.concatenate(both) for both in zip(*spots, strict=True))
+        bits = np.repeat([0, 1], [len(seen) for seen, _ in spots])
         poses = np.full((len(self.robots), 3), np.nan)
         for team in self._teams:
-            centres = self._spots(self._colour[team], self._layout.centre_radius)
-            found = [self._sightings(centre, dots, bits) for centre in centres]
+            centres, entire = self._spots(self._colour[team], self._layout.centre_radius)
+            found = [self._sightings(centre, dots, whole, bits) for centre in centres[entire]]
             self._identify([f for f in found if f], self._rows[team], poses)
         return poses
 
-    def _spots(self, colour: int, radius: float) -> Array:
-        """Spots (k, 2) of one colour that may be dots of this radius, on the plane of the dots."""
+    def _spots(self, colour: int, radius: float) -> tuple[Array, Flags]:
+        """Spots (k, 2) of one colour that may be dots of this radius, and which are whole."""
         camera, height = self._camera, self._layout.height
         # the area a dot has anywhere in the image is checked below; this only saves work
         size = np.pi * radius**2 * self._middle
-        blobs: Blobs = self._finder.find(colour, 0.2 * size, 4 * np.sqrt(size))
+        blobs: Blobs = self._finder.find(colour, 0.5 * _LEAST * size, 4 * np.sqrt(size))
         share = blobs.area / (np.pi * radius**2 * self._scale(blobs.centre))
         likely = (share > _LEAST) & (share < _MOST)
-        return camera.on_plane(blobs.centre[likely], height)
+        return camera.on_plane(blobs.centre[likely], height), share[likely] > _WHOLE
 
     def _scale(self, pixels: Array) -> Array:
         """Pixels (k,) that a square metre of the dots' plane covers around pixels (k, 2)."""
@@ -156,15 +158,18 @@ class PatternFinder:
         depth = (self._layout.height - self._camera.position[2]) / rise
         return self._camera.focal**2 * np.abs(rise) / depth**2
 
-    def _sightings(self, centre: Array, dots: Array, bits: NDArray) -> "list[_Sighting]":
+    def _sightings(
+        self, centre: Array, dots: Array, whole: Flags, bits: NDArray[np.int64]
+    ) -> "list[_Sighting]":
         """Every way to see a robot around a team's dot with as many dots as possible."""
         away = dots - centre
         distance = np.hypot(away[:, 0], away[:, 1])
-        reach = self._radius.max() + _NEAR
-        near = np.flatnonzero((distance > self._radius.min() - _NEAR) & (distance < reach))
+        tolerance = np.where(whole, _NEAR, _NEAR_PART)
+        low, high = self._radius.min() - tolerance, self._radius.max() + tolerance
+        near = np.flatnonzero((distance > low) & (distance < high))
         if len(near) < _FEWEST:
             return []
-        away, bits = away[near], bits[near]
+        away, whole, bits, tolerance = away[near], whole[near], bits[near], tolerance[near]
         angle = np.arctan2(away[:, 1], away[:, 0])
         # every heading that puts one of the layout's dots on one of those seen
         heading = (angle[:, None] - self._angle).ravel()
@@ -173,7 +178,7 @@ class PatternFinder:
         expected = np.stack([c * x - s * y, s * x + c * y], axis=-1)
         error = np.linalg.norm(expected[:, :, None] - away, axis=-1)
         match, off = error.argmin(axis=2), error.min(axis=2)
-        hits = off < _NEAR
+        hits = off < tolerance[match]
         count = hits.sum(axis=1)
         most = count.max()
         if most < _FEWEST:
@@ -184,7 +189,10 @@ class PatternFinder:
             key = (*seen, *match[k, seen])
             if key not in found:
                 at = match[k, seen]
-                residual, pose = _fit(centre, self._dots[seen], centre + away[at], self._close)
+                use = whole[at] if whole[at].sum() >= 2 else np.full(len(at), True)
+                residual, pose = _fit(
+                    centre, self._dots[seen][use], centre + away[at][use], self._close
+                )
                 known, value = (1 << seen).sum(), (bits[at] << seen).sum()
                 found[key] = _Sighting(len(seen), residual, int(known), int(value), pose)
         return list(found.values())

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 Rgb = tuple[float, float, float]
 Rgba = tuple[float, float, float, float]
 
-# hues of 51, 223, 2 and 93 degrees; the bits' are 321 and 180, the carpet's 134, the ball's 23
+# hues of 51, 222, 2 and 93 degrees; the bits' are 320 and 180, the carpet's 134, the ball's 23
 TEAM_COLOURS: dict[str, Rgba] = {
     "yellow": (0.98, 0.85, 0.10, 1.0),
     "blue": (0.10, 0.35, 0.95, 1.0),

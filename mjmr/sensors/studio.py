@@ -13,9 +13,6 @@ from mjmr.render import Renderer
 if TYPE_CHECKING:
     from mjmr.loop import TickedSimulation
 
-# pieces a lamp's light is sampled at along a wall, a box or the floor
-_LAMP_QUADS = 8
-
 
 class Studio:
     """A private copy of the state, and one renderer for each size of picture.
@@ -45,7 +42,6 @@ class Studio:
         props = [name for name, _ in world.named_props()]
         self.label_names = (*team.names, *props, "floor", "wall", "other")
         self._labels = _labels(model, self.label_names, team.n)
-        self._quads = _LAMP_QUADS if world.lighting == "uneven" else 1
         self._renderers: dict[tuple[int, int], Renderer] = {}
 
     def show(self, state: Any) -> None:
@@ -85,7 +81,7 @@ class Studio:
     def _renderer(self, width: int, height: int) -> Renderer:
         size = (width, height)
         if size not in self._renderers:
-            self._renderers[size] = Renderer(self.model, width, height, quads=self._quads)
+            self._renderers[size] = Renderer(self.model, width, height)
         return self._renderers[size]
 
 

@@ -131,6 +131,21 @@ def test_a_half_hidden_dot_does_not_pull_the_pose():
     check(PatternFinder(DOWN, LAYOUT, [("blue", 3)]).find(image), pose)
 
 
+def test_slivers_of_dots_still_tell_the_number():
+    """A box hides all but 6 mm of two dots: their colours count, their middles do not."""
+    pose = np.array([[0.4, -0.3, 0.0]])
+    numbers = [n for n in range(16) if LAYOUT.codes[n] >> 3 == 0]
+    for number in numbers:
+        image = draw([("blue", number)], pose)
+        u = int(DOWN.on_floor(pose[:, :2] + [-0.0548 - 0.014, 0.0], z=LAYOUT.height)[0, 0])
+        cv2.rectangle(image, (u - 100, 400), (u, 700), (140, 107, 77), -1)
+        whole = draw([("blue", number)], pose)
+        assert (whole != image).any()
+        found = PatternFinder(DOWN, LAYOUT, [("blue", n) for n in range(16)]).find(image)
+        assert np.flatnonzero(np.isfinite(found[:, 0])).tolist() == [number]
+        check(found[[number]], pose, 0.002, 1.5)
+
+
 def test_nothing_is_seen_where_nothing_is():
     finder = PatternFinder(DOWN, LAYOUT, TEN)
     for image in (
