@@ -26,6 +26,8 @@ def model_path(robot: str, variant: str = "") -> Path:
     name = f"{robot}_{variant}" if variant else robot
     path = asset_folder() / robot / f"{name}.xml"
     if not path.is_file():
-        models = (p.stem for p in asset_folder().glob("*/*.xml") if p.stem.startswith(p.parent.name))
+        models = (
+            p.stem for p in asset_folder().glob("*/*.xml") if p.stem.startswith(p.parent.name)
+        )
         raise UnknownNameError("robot model", name, sorted(models))
     return path
