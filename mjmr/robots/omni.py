@@ -74,7 +74,7 @@ class OmniDrive:
         self._turning = share[:, :2] * mass
 
     def place(self, data: "mujoco.MjData", poses: Array) -> None:
-        """Put the robots at rest at ``poses``, as deep in the floor as their weight presses them."""
+        """Put the robots at rest at ``poses``, as deep in the floor as weight presses them."""
         data.qpos[self._qpos] = 0.0
         data.qpos[self._qpos[:, :2]] = poses[:, :2]
         data.qpos[self._qpos[:, 2]] = self._height

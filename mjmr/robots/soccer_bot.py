@@ -15,8 +15,11 @@ if TYPE_CHECKING:
 
     from mjmr.sensors.base import Sensor
 
-DRIVES = ("planar", "omni")
-OMNI_LIMITS = DriveLimits(max_speed=2.0, acceleration=2.5, deceleration=3.0)
+# what each drive follows in every direction, measured: assets/soccer_bot/README.md
+DRIVES = {
+    "planar": DriveLimits(max_speed=2.0, acceleration=3.0, deceleration=6.0),
+    "omni": DriveLimits(max_speed=2.0, acceleration=3.0, deceleration=3.0),
+}
 
 
 class SoccerBot(Platform):
@@ -27,7 +30,7 @@ class SoccerBot(Platform):
     height = 0.150
     max_twist = (3.0, 12.0)
     braking = 6.0
-    limits = DriveLimits(max_speed=2.0, acceleration=3.0, deceleration=6.0)
+    limits = DRIVES["planar"]
 
     def __init__(self, drive: str = "planar"):
         """Choose the drive.
@@ -42,9 +45,8 @@ class SoccerBot(Platform):
         if drive not in DRIVES:
             raise UnknownNameError("drive of SoccerBot", drive, DRIVES)
         self.drive_name = drive
-        if drive == "omni":
-            self.limits = OMNI_LIMITS
-            self.braking = OMNI_LIMITS.deceleration
+        self.limits = DRIVES[drive]
+        self.braking = self.limits.deceleration
 
     def model(self, number: int, team: str) -> "mujoco.MjSpec":
         """Model of one robot with its team's ring, its dot pattern and its number on the back."""
