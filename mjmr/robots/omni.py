@@ -19,10 +19,10 @@ WHEELS = 4
 def roll_on_floor(spec: "mujoco.MjSpec", prefixes: Sequence[str]) -> None:
     """Let the wheels of the robots attached under ``prefixes`` touch the floor.
 
-    A wheel's contact shape is a capsule of next to no length along the axle, whose contact frame
-    with a plane MuJoCo turns to its axis: friction is near zero along the axle, where rollers roll
-    freely, and full across it. Only a contact pair can have friction that depends on direction;
-    its numbers are the model's default for pairs.
+    A wheel's contact shape is a short capsule along the axle, whose contact frame with a plane
+    MuJoCo turns to its axis: friction is near zero along the axle, where rollers roll freely, and
+    full across it. Only a contact pair can have friction that depends on direction; its numbers
+    are the model's default for pairs.
     """
     for prefix in prefixes:
         default = spec.find_default(f"{prefix}wheel")
@@ -74,7 +74,7 @@ class OmniDrive:
         self._turning = share[:, :2] * mass
 
     def place(self, data: "mujoco.MjData", poses: Array) -> None:
-        """Put the robots at rest at ``poses``, wheels as deep in the floor as their weight does."""
+        """Put the robots at rest at ``poses``, as deep in the floor as weight presses them."""
         data.qpos[self._qpos] = 0.0
         data.qpos[self._qpos[:, :2]] = poses[:, :2]
         data.qpos[self._qpos[:, 2]] = self._height

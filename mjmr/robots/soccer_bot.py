@@ -19,8 +19,11 @@ if TYPE_CHECKING:
 _DOTS = np.array([[0.035, 0.0548], [-0.0548, 0.035], [-0.0548, -0.035], [0.035, -0.0548]])
 _DOTS.setflags(write=False)
 _HALF_DOT = 0.0006  # m, half the thickness of a dot
-DRIVES = ("planar", "omni")
-OMNI_LIMITS = DriveLimits(max_speed=2.0, acceleration=2.5, deceleration=3.0)
+# what each drive follows in every direction, measured: assets/soccer_bot/README.md
+DRIVES = {
+    "planar": DriveLimits(max_speed=2.0, acceleration=3.0, deceleration=6.0),
+    "omni": DriveLimits(max_speed=2.0, acceleration=3.0, deceleration=3.0),
+}
 
 
 class SoccerBot(Platform):
@@ -36,7 +39,7 @@ class SoccerBot(Platform):
     max_twist = (3.0, 12.0)
     braking = 6.0
     pattern = DotPattern(dots=_DOTS, dot_radius=0.020, centre_radius=0.025, height=0.1538)
-    limits = DriveLimits(max_speed=2.0, acceleration=3.0, deceleration=6.0)
+    limits = DRIVES["planar"]
 
     def __init__(self, drive: str = "planar"):
         """Choose the drive.
@@ -51,9 +54,8 @@ class SoccerBot(Platform):
         if drive not in DRIVES:
             raise UnknownNameError("drive of SoccerBot", drive, DRIVES)
         self.drive_name = drive
-        if drive == "omni":
-            self.limits = OMNI_LIMITS
-            self.braking = OMNI_LIMITS.deceleration
+        self.limits = DRIVES[drive]
+        self.braking = self.limits.deceleration
 
     def model(self, number: int, team: str) -> "mujoco.MjSpec":
         """Model of one robot with its team's ring, its dot pattern and its number on the back."""

@@ -66,7 +66,8 @@ def test_it_survives_halton_noise_without_a_warning():
     world.add_box(0.6, 0.1, 0.3, 0.2, mass=1.0)
     simulation = Simulation(world)
     model, data = simulation.model, simulation.data
-    noise = qmc.Halton(model.nu, seed=0).random(round(1.0 / model.opt.timestep))
+    steps = round(1.0 / model.opt.timestep)
+    noise = qmc.Halton(model.nu, rng=np.random.default_rng(0)).random(steps)
     for row in noise:
         # set points reach 70 rad/s, 1.8 m/s at the rim, within a few steps
         data.ctrl[:] = 4000.0 * (row - 0.5)
@@ -96,19 +97,18 @@ def test_it_starts_at_rest_and_stands_still():
 @pytest.mark.parametrize("dt_max", TIMESTEPS)
 @pytest.mark.parametrize("degrees", [0, 20, 45, 90])
 def test_it_follows_the_limits_in_every_direction(degrees, dt_max):
-    """2 m/s at what ``limits`` promises, and at 3 m/s^2 up: the slopes, the heading, the way."""
+    """2 m/s and back at what ``limits`` promises: slopes, heading, way and velocity."""
     limits = SoccerBot(drive="omni").limits
-    angle = np.radians(degrees)
-    for up in (limits.acceleration, 3.0):
-        poses, twists, commands = straight(angle, up, limits.deceleration, dt_max)
-        up_found, down_found = slopes(twists)
-        assert up_found == pytest.approx(up, rel=0.05)
-        assert down_found == pytest.approx(limits.deceleration, rel=0.05)
-        assert np.degrees(np.abs(poses[:, 2]).max()) < 0.5
-        way = np.cumsum(commands[1:] + commands[:-1], axis=0)[:, :2] * PERIOD / 2
-        miss = np.hypot(*(poses[1:, :2] - way).T)
-        assert miss.max() < 0.01
-        assert np.abs(twists[:, :2] - commands[:, :2]).max() < 0.05
+    poses, twists, commands = straight(
+        np.radians(degrees), limits.acceleration, limits.deceleration, dt_max
+    )
+    up, down = slopes(twists)
+    assert up == pytest.approx(limits.acceleration, rel=0.05)
+    assert down == pytest.approx(limits.deceleration, rel=0.05)
+    assert np.degrees(np.abs(poses[:, 2]).max()) < 0.1
+    way = np.cumsum(commands[1:] + commands[:-1], axis=0)[:, :2] * PERIOD / 2
+    assert np.hypot(*(poses[1:, :2] - way).T).max() < 0.008
+    assert np.abs(twists[:, :2] - commands[:, :2]).max() < 0.03
 
 
 def test_friction_bounds_its_braking():
@@ -158,9 +158,10 @@ def test_wheels_roll_without_slip():
     drive(simulation, robots, commands)
     found = [simulation.data.joint(f"soccer_bot0/wheel{k}").qvel[0] for k in range(4)]
     around = np.radians([45, 135, 225, 315])
+    # (tyres sink in by 0.2 mm, which makes them 0.4 % smaller)
     # forward along the tangent, anticlockwise, turns a wheel against its outward axle
     tangent = -np.sin(around) * twist[0] + np.cos(around) * twist[1] + 0.0805 * twist[2]
-    np.testing.assert_allclose(found, tangent / -0.026, rtol=0.003, atol=0.02)
+    np.testing.assert_allclose(found, tangent / -0.026, rtol=0.006, atol=0.02)
 
 
 def test_it_turns_in_place():
@@ -255,3 +256,31 @@ def test_an_emergency_stop_stays_within_the_limits():
     assert SoccerBot().braking == 6.0
     with pytest.raises(InvalidInputError, match="valid: planar, omni"):
         SoccerBot(drive="legs")
+
+
+def test_exported_mjcf_stands_where_it_starts():
+    """Pairs, heights and limits survive MJCF text: in MuJoCo alone the robot does not move."""
+    pose = [1.0, 0.5, 0.3]
+    world, _ = omni([pose])
+    model = mujoco.MjModel.from_xml_string(world.to_xml())
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)
+    assert model.npair == 4
+    for _ in range(240):
+        mujoco.mj_step(model, data)
+    np.testing.assert_allclose(data.body("soccer_bot0/base").xpos[:2], pose[:2], atol=1e-4)
+    assert abs(data.body("soccer_bot0/base").xpos[2]) < 1e-3
+
+
+def test_a_crash_does_not_turn_it_over():
+    """Head on at 2 m/s each, off the centre line: it rocks, and stands on its wheels again."""
+    world, robots = omni([[-1.2, 0.03, 0.0], [1.2, -0.03, np.pi]])
+    simulation = Simulation(world)
+    tilts = []
+    bases = [simulation.data.body(f"soccer_bot{i}/base") for i in range(2)]
+    simulation.observe(lambda: tilts.append([np.arccos(min(1.0, b.xmat[8])) for b in bases]))
+    speed = np.concatenate([np.minimum(np.arange(1, 61) * 0.05, 2.0), np.zeros(60)])
+    drive(simulation, robots, speed[:, None] * [1.0, 0.0, 0.0])
+    tilted = np.degrees(tilts)
+    assert 0.5 < tilted.max() < 15.0
+    assert tilted[-1].max() < 0.1
