@@ -49,7 +49,7 @@ def build_spec(world: "World") -> mujoco.MjSpec:
     spec.visual.quality.offsamples = 0
     spec.visual.global_.offwidth, spec.visual.global_.offheight = 1920, 1080
     # the headlight goes with the camera; where a lamp is to shade the scene it gives nothing
-    glow = 0.25 if world.lighting == "uneven" else 0.35
+    glow = 0.2 if world.lighting == "uneven" else 0.35
     spec.visual.headlight.ambient = [glow] * 3
     spec.visual.headlight.diffuse = [0.0 if world.lighting == "uneven" else 0.25] * 3
     spec.visual.headlight.specular = [0.0, 0.0, 0.0]
@@ -125,7 +125,7 @@ def _lamp(spec: mujoco.MjSpec, at: np.ndarray, far: float) -> None:
         dir=[0.0, 0.0, -1.0],
         cutoff=90.0,
         exponent=0.0,
-        diffuse=[0.95, 0.95, 0.95],
+        diffuse=[0.85, 0.85, 0.85],
         specular=[0.15, 0.15, 0.15],
         # falls with the square of the distance, to a half at twice the height
         attenuation=[0.67, 0.0, 0.33 / height**2],

@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 _HUES = 180  # OpenCV's hue in 8 bits counts 2 degrees
 _CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 _SQUARE = np.ones((2, 2), dtype=np.uint8)
-_WIDEST = 12  # half of a hue window at most
+_WIDEST = 14  # a hue window reaches this far to either side at most
 
 
 @dataclass(frozen=True)
@@ -48,10 +48,12 @@ class BlobFinder:
         rgb = np.array([colours], dtype=np.float32)
         hsv = cv2.cvtColor(rgb, cv2.COLOR_RGB2HSV)[0]
         hue = hsv[:, 0] / 2
-        apart = np.abs(hue[:, None] - hue)
-        apart = np.minimum(apart, _HUES - apart) + np.diag(np.full(len(hue), np.inf))
-        half = np.minimum(apart.min(axis=1, initial=np.inf) / 2, _WIDEST)
-        self._low, self._high = np.ceil(hue - half).astype(int), np.floor(hue + half).astype(int)
+        # a window reaches half way to the next hue on either side
+        ahead = (hue - hue[:, None]) % _HUES
+        ahead[ahead == 0] = np.inf
+        up = np.minimum(ahead.min(axis=1, initial=np.inf) / 2, _WIDEST)
+        down = np.minimum(ahead.min(axis=0, initial=np.inf) / 2, _WIDEST)
+        self._low, self._high = np.ceil(hue - down).astype(int), np.floor(hue + up).astype(int)
         self._least = np.round(255 * saturation * hsv[:, 1]).astype(int)
         self._dark = dark
         self._hsv: NDArray[np.uint8] | None = None

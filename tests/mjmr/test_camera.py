@@ -218,11 +218,11 @@ def test_images_nobody_reads_are_not_rendered(monkeypatch):
 def test_a_forgotten_simulation_does_not_spoil_the_pictures_of_another():
     """The collector frees the context of one while that of another is current."""
     camera, simulation, robots = approaching(rate=60.0)
-    alone = frames(camera, simulation, robots, seconds=0.2)
+    alone = frames(camera, simulation, robots, seconds=4 / 60)
     camera, simulation, robots = approaching(rate=60.0)
     gc.collect()
     again = {}
-    for _ in range(12):
+    for _ in range(4):
         other = approaching(rate=60.0)
         frames(*other, seconds=1 / 60)
         again |= frames(camera, simulation, robots, seconds=1 / 60)
