@@ -17,7 +17,8 @@ Array = NDArray[np.float64]
 # of the camera, and of the report that stands for it: a cycle for exposure and transfer, a cycle
 # for finding the robots
 RATE, LATENCY = 30.0, 2 / 60
-YAW_NOISE = 0.005  # [rad]
+# [rad]: the heading's error of the vision, measured on images of other seeds
+YAW_NOISE = 0.006
 LOSS = 0.05
 
 

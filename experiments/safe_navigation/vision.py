@@ -20,6 +20,7 @@ from mjmr.world import World
 
 Array = NDArray[np.float64]
 ROBOTS = 10
+WIDTH, HEIGHT = 800, 600  # px
 CAMERA_HEIGHT = 4.0  # m, above the middle of the field
 FOVY = np.radians(61.0)  # just sees all of the floor inside the walls in a 4:3 image
 _TOUCHING = 0.3  # share of the robots that touch another one
@@ -29,8 +30,8 @@ _GAP = 0.0005  # m between two that touch
 def overhead_camera(
     world: World,
     *,
-    width: int = 1280,
-    height: int = 960,
+    width: int = WIDTH,
+    height: int = HEIGHT,
     rate: float = 60.0,
     latency: float = 0.0,
     noise: float = 5.0,
@@ -73,8 +74,8 @@ def vision_accuracy(
     frames: int,
     seed: int,
     *,
-    width: int = 1280,
-    height: int = 960,
+    width: int = WIDTH,
+    height: int = HEIGHT,
     noise: float = 5.0,
     lighting: str = "uneven",
     teams: Sequence[str] = ("yellow", "blue"),
