@@ -57,14 +57,23 @@ class FilterTracker:
     bridges the time to now, so that late and rare reports are taken for what they are.
     """
 
-    def __init__(self, starts: Array, period: float, config: PoseFilterConfig):
+    def __init__(
+        self,
+        starts: Array,
+        period: float,
+        config: PoseFilterConfig,
+        ramp_from_command: bool = False,
+    ):
         """Start from where the robots were put.
 
         Args:
             starts: Nominal starts (n, 2) [m], believed until a robot's first report.
             period: Control period [s].
             config: The filter's noises.
+            ramp_from_command: Whether velocities are those the robots say they execute, so that
+                commands ramp from there; else the filter's.
         """
+        self._ramp_from_command = ramp_from_command
         self._filter = PoseFilter(len(starts), config)
         self._starts, self._period = starts, period
         self._since: deque[Array] = deque()
@@ -91,6 +100,8 @@ class FilterTracker:
             pose[unknown] = np.column_stack([self._starts, np.zeros(len(pose))])[unknown]
             velocity[unknown] = 0.0
         self.yaw = pose[:, 2].copy()
+        if self._ramp_from_command:
+            velocity = world_velocity(executed, self.yaw)
         return pose[:, :2], velocity
 
 

@@ -11,6 +11,7 @@ from experiments.safe_navigation.pilot import Pilot
 from experiments.safe_navigation.sensing import YAW_NOISE
 from experiments.safe_navigation.trackers import CartTracker, FilterTracker, RawTracker
 from experiments.safe_navigation.worlds import build
+from mjmr.geometry import angle_difference
 from mjmr.kinematics import KinematicSimulation
 from mjmr.loop import TickedSimulation
 from mjmr.metrics import ContactMeter, OverlapMeter
@@ -51,7 +52,13 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
             world, seed=seed, control_period=PERIOD, dt_max=condition["dt_ms"] / 1000.0
         )
         meter: Any = ContactMeter(simulation, scene.strangers)
-        tracker: Any = FilterTracker(scene.starts, PERIOD, filter_noises(condition))
+        tracker: Any = FilterTracker(
+            scene.starts,
+            PERIOD,
+            filter_noises(condition),
+            # wheels creep: commands that start at the body's velocity would add that up
+            ramp_from_command=condition["drive"] == "omni",
+        )
     else:
         simulation = KinematicSimulation(world, seed=seed, control_period=PERIOD)
         meter = OverlapMeter(simulation, outsiders=scene.strangers)
@@ -173,7 +180,8 @@ class _Motion:
 
         def observe() -> None:
             self._speeds.append(float(np.hypot(*truth.twists(robots)[0, :2])))
-            self._yaw = max(self._yaw, abs(float(truth.poses(robots)[0, 2])))
+            turned = angle_difference(truth.poses(robots)[0, 2], robots.start[0, 2])
+            self._yaw = max(self._yaw, abs(float(turned)))
 
         simulation.observe(observe)
 

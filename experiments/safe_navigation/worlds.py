@@ -22,7 +22,9 @@ def build(condition: Mapping[str, Any], seed: int) -> tuple[World, Group, Scene,
     """World, robots, scene and sensing of one trial.
 
     Starts on the field are displaced by up to 20 mm along x and y, drawn from the seed: with exact
-    reports and no search nothing else differs from run to run.
+    reports and no search nothing else differs from run to run. The one robot of the straight scene
+    starts at its place with a heading drawn from the seed, so that it drives in any direction of
+    its own.
 
     Raises:
         InvalidInputError: A drive or a sensing that needs bodies, without them.
@@ -37,7 +39,10 @@ def build(condition: Mapping[str, Any], seed: int) -> tuple[World, Group, Scene,
     sigma = condition["sigma_mm"] / 1000.0
     place = scene(condition["scene"])
     starts = place.starts
-    if condition["scene"] not in ("overlap", "straight"):
+    yaw = np.zeros(len(starts))
+    if condition["scene"] == "straight":
+        yaw = Streams(seed).generator("yaw").uniform(-np.pi, np.pi, len(starts))
+    elif condition["scene"] != "overlap":
         starts = starts + Streams(seed).generator("starts").uniform(-_SPREAD, _SPREAD, starts.shape)
     lighting = "uneven" if condition["sensing"] == "vision" else "even"
     world = World.rectangle(4.9, 3.8, border=0.30, lighting=lighting)
@@ -52,7 +57,7 @@ def build(condition: Mapping[str, Any], seed: int) -> tuple[World, Group, Scene,
         world.mount(CartReport(rate=60.0, position_noise=sigma))
     robots = world.add_group(
         SoccerBot(condition["drive"]),
-        np.column_stack([starts, np.zeros(len(starts))]),
+        np.column_stack([starts, yaw]),
         command_latency=condition["latency"],
     )
     lossy = condition["failure"] == "reports-lost"
