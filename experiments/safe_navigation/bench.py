@@ -6,7 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from experiments.safe_navigation.sizes import OMNI, VISION
 from experiments.safe_navigation.trial import prepare
+from experiments.safe_navigation.vision import HEIGHT, WIDTH, vision_accuracy
 from mjmr.bench import conditions, interleave, spread
 
 
@@ -15,7 +17,9 @@ def bench() -> str:
     from experiments.safe_navigation import study
 
     prepare()
-    return "\n".join([conditions(), *_planning(study), *_real_time(study), *_workers(study)])
+    return "\n".join(
+        [conditions(), *_planning(study), *_real_time(study), *_vision(), *_workers(study)]
+    )
 
 
 def _planning(study: Any) -> list[str]:
@@ -54,6 +58,9 @@ def _real_time(study: Any) -> list[str]:
         "physical, A": {"mode": "physical", "scene": "A", "margin_mm": 1.0},
         "physical, cross4": {"mode": "physical", "scene": "cross4", "margin_mm": 1.0},
         "physical, cross10": {"mode": "physical", "scene": "cross10", "margin_mm": 1.0},
+        "omni-wheels, A": {"mode": "physical", "scene": "A", **OMNI},
+        "omni-wheels, cross4": {"mode": "physical", "scene": "cross4", **OMNI},
+        "vision, cross4": {"mode": "physical", "scene": "cross4", "sensing": "vision", **VISION},
     }
 
     def job(values: dict[str, Any]) -> Callable[[], float]:
@@ -68,7 +75,25 @@ def _real_time(study: Any) -> list[str]:
 
     rounds = interleave({name: job(values) for name, values in cases.items()})
     lines = ["simulated s per wall s, all included, one core, median [lowest, highest]:"]
-    return lines + [f"  {name:18s} {spread(figure)}" for name, figure in rounds.items()]
+    return lines + [f"  {name:19s} {spread(figure)}" for name, figure in rounds.items()]
+
+
+def _vision() -> list[str]:
+    figures: dict[str, list[float]] = {"render": [], "find": []}
+
+    def job() -> float:
+        metrics = vision_accuracy(40, 0)
+        for name, values in figures.items():
+            values.append(float(metrics[f"wall_{name}_ms"]))
+        return 0.0
+
+    interleave({"images": job})
+    render, find = (np.array(v[1:]) for v in figures.values())
+    return [
+        f"overhead vision, ten robots, {WIDTH} x {HEIGHT}, one core, median [lowest, highest]:",
+        f"  render with noise {spread(render)} ms, find {spread(find)} ms: "
+        f"{spread(1000 / (render + find))} images a second",
+    ]
 
 
 def _workers(study: Any) -> list[str]:

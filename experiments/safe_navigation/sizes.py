@@ -14,8 +14,8 @@ _MARGINS = (1.0, 2.0, 3.0, 4.0)
 OMNI_MARGIN = 10.0  # mm
 VISION_MARGIN = 4.0  # mm
 VISION_SIGMA = 0.4  # mm along x and y: the error of the vision, measured on images of other seeds
-_OMNI = {"drive": "omni", "limits": "measured", "margin_mm": OMNI_MARGIN}
-_VISION = {"margin_mm": VISION_MARGIN, "sigma_mm": VISION_SIGMA}
+OMNI = {"drive": "omni", "limits": "measured", "margin_mm": OMNI_MARGIN}
+VISION = {"margin_mm": VISION_MARGIN, "sigma_mm": VISION_SIGMA}
 
 QUICK = Size(
     "quick",
@@ -41,9 +41,9 @@ QUICK = Size(
             duration=5.0,
             seeds=2,
         ),
-        Grid(mode="physical", scene="cross4", **_OMNI, duration=10.0, seeds=1),
+        Grid(mode="physical", scene="cross4", **OMNI, duration=10.0, seeds=1),
         Grid(scene="gallery", sensing="vision", mode="physical", duration=1.0, seeds=1),
-        Grid(mode="physical", scene="cross4", **_VISION, sensing="vision", duration=2.0, seeds=1),
+        Grid(mode="physical", scene="cross4", **VISION, sensing="vision", duration=2.0, seeds=1),
     ),
     default_seeds=3,
     expected_minutes=0.4,
@@ -94,12 +94,12 @@ def _whole(seeds: int, zero_seeds: int, physical_seeds: int) -> tuple[Grid, ...]
             duration=10.0,
             seeds=12,
         ),
-        Grid(mode="physical", scene=("A", "cross4"), **_OMNI, seeds=physical_seeds),
+        Grid(mode="physical", scene=("A", "cross4"), **OMNI, seeds=physical_seeds),
         Grid(mode="physical", scene="gallery", sensing="vision", duration=10.0, seeds=10),
         Grid(
             mode="physical",
             scene=("A", "cross4"),
-            **_VISION,
+            **VISION,
             sensing=("vision", "late-report"),
             seeds=physical_seeds,
         ),

@@ -108,6 +108,7 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
             waypoints = getattr(navigator, "waypoints", goals)
             simulation.note(goals=goals, waypoints=waypoints, stops=pilot.stops)
 
+    simulation.close()
     each = 1e6 * spent / robots.n
     return {
         "goals": int(pilot.shuttle.reached.sum()),
