@@ -15,7 +15,7 @@ from experiments.safe_navigation.scenes import scene
 from experiments.safe_navigation.trackers import FilterTracker, RawTracker
 from experiments.safe_navigation.trial import slope
 from experiments.safe_navigation.worlds import build
-from mjmr.errors import TruthError
+from mjmr.errors import InvalidInputError, TruthError
 from mjmr.parts import PartChoice
 from mjmr.recording import record
 from mjmr.watch import watching
@@ -86,7 +86,7 @@ def test_every_scene_runs_in_every_mode_with_every_failure():
     """Half a second each: nothing a user can ask for crashes, lost first reports included."""
     values = {p.name: p.values for p in study.parameters}
     for mode in values["mode"] or ():
-        for name in values["scene"] or ():
+        for name in set(values["scene"] or ()) - {"gallery"}:
             for failure in values["failure"] or ():
                 for seed in range(3):
                     run(seed, mode=mode, scene=name, failure=failure, latency=1, duration=0.5)
@@ -256,3 +256,55 @@ def test_slopes_are_those_of_the_passages_whatever_ripples_on_them():
             -6.0, rel=0.02 if not ripple else 0.15
         )
     assert np.isnan(slope(speed[:40], 0.4, 1.6, 1 / 60))
+
+
+def test_late_and_rare_reports_are_taken_for_what_they_are():
+    """A robot that speeds up is reported two cycles late, every second cycle: no error remains."""
+    period = 0.1
+    tracker = FilterTracker(np.array([[0.0, 0.0]]), period, PoseFilterConfig(start_speed=1e-6))
+    x, v, past = 0.0, 0.0, []
+    for k in range(40):
+        executed = np.array([[0.02 * k, 0.0, 0.0]])
+        if k:
+            x += 0.5 * (v + executed[0, 0]) * period
+        v = executed[0, 0]
+        past.append(x)
+        fresh = k >= 2 and k % 2 == 0
+        report = np.array([[past[k - 2] if fresh else 77.0, 0.0, 0.0]])
+        position, velocity = tracker.update(report, 2 if fresh else None, executed)
+        if k >= 2:
+            np.testing.assert_allclose(position, [[x, 0.0]], atol=1e-4)
+            np.testing.assert_allclose(velocity, [[v, 0.0]], atol=1e-3)
+
+
+def test_robots_on_omni_wheels_do_not_touch():
+    omni = {"mode": "physical", "drive": "omni", "limits": "measured", "margin_mm": 10.0}
+    metrics = run(scene="cross4", **omni)
+    assert metrics["contact_s"] == 0.0
+    assert metrics["goals"] >= 6
+
+
+def test_robots_seen_by_images_go_where_those_with_reports_go():
+    seen = {
+        sensing: run(
+            mode="physical", scene="cross4", sensing=sensing, margin_mm=4.0, sigma_mm=0.4,
+            duration=4.0,
+        )
+        for sensing in ("vision", "late-report")
+    }  # fmt: skip
+    assert seen["vision"]["contact_s"] == 0.0
+    assert seen["vision"]["goals"] == seen["late-report"]["goals"] >= 3
+
+
+def test_a_stranger_is_counted_apart_and_carts_are_kept_clear_of():
+    metrics = run(scene="stranger10", foresee=False)
+    assert metrics["stranger_overlap_mm_s"] > 1.0
+    assert run(scene="carts")["obstacle_overlap_mm_s"] < 0.05 * max(
+        run(scene="carts", search=False)["obstacle_overlap_mm_s"], 1.0
+    )
+
+
+@pytest.mark.parametrize("asked", [{"drive": "omni"}, {"sensing": "vision"}])
+def test_what_needs_bodies_is_refused_without_them(asked):
+    with pytest.raises(InvalidInputError, match="needs mode=physical"):
+        run(mode="metric", **asked)
