@@ -36,6 +36,7 @@ class Renderer:
         if look == "draft":
             # in software half of the time went into the triangles of round shapes and the floor
             quality.numslices, quality.numstacks, quality.numquads = 20, 6, 1
+            quality.shadowsize = 0  # the map would take 64 MiB in every context
         try:
             self._renderer = mujoco.Renderer(model, height, width)
         except Exception as error:  # each GL backend raises its own kind
