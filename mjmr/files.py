@@ -6,7 +6,9 @@ from pathlib import Path
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:
-    """Write bytes, or text as UTF-8: a reader, or a kill, sees the old file or the new one, nothing between.
+    """Write bytes, or text as UTF-8.
+
+    A reader, or a kill, sees the old file or the new one, nothing between.
 
     Raises:
         OSError: The folder cannot be written to.

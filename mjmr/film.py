@@ -136,9 +136,7 @@ def overview_camera(
 class _Panel:
     """One recording in one rectangle."""
 
-    def __init__(
-        self, footage: Footage, label: str, width: int, height: int, options: FilmOptions
-    ):
+    def __init__(self, footage: Footage, label: str, width: int, height: int, options: FilmOptions):
         self._footage, self._label, self._options = footage, label, options
         self._model = copy.copy(footage.model)  # the renderer sets sizes and quality in it
         self._data = mujoco.MjData(self._model)

@@ -48,7 +48,7 @@ class VideoWriter:
     def write(self, picture: NDArray[np.uint8]) -> None:
         """Append one picture, shape (height, width, 3)."""
         # a tenth of the time libswscale takes
-        planes = cv2.cvtColor(picture, cv2.COLOR_RGB2YUV_I420)
+        planes = np.asarray(cv2.cvtColor(picture, cv2.COLOR_RGB2YUV_I420), dtype=np.uint8)
         frame = av.VideoFrame.from_ndarray(planes, format="yuv420p")
         self._container.mux(self._stream.encode(frame))
         self.frames += 1

@@ -106,17 +106,20 @@ class Sensor(ABC):
         value.setflags(write=False)
         return value
 
-    def follow(self, hear: Callable[[int, float, float, NDArray[np.float64]], None]) -> None:
-        """Call ``hear(number, sampled, delivered, value)`` at every sample to come [s]; for traces.
+    def follow(
+        self, hear: Callable[[int, float, float, Callable[[], NDArray[np.float64]]], None]
+    ) -> None:
+        """Call ``hear(number, sampled, delivered, value)`` at every sample to come; for traces.
 
-        The value is computed then, whoever reads it later. That changes nothing but the work.
+        Instants are in seconds. ``value()`` computes the sample, which changes nothing for those
+        who read it later.
         """
         simulation = self._simulation
         assert simulation is not None
 
         def listen(sample: _Sample) -> None:
             delivered = sample.ready_step * simulation.timestep
-            hear(sample.number, sample.time, delivered, self._value(sample))
+            hear(sample.number, sample.time, delivered, lambda: self._value(sample))
 
         self._listener = listen
 
