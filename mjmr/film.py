@@ -155,7 +155,7 @@ class _Panel:
         mujoco.mj_kinematics(model, data)
         mujoco.mj_camlight(model, data)
         renderer = self._renderer
-        image = renderer.picture(data, self._camera(index)).copy()
+        image = renderer.picture(data, self._camera(index))
         view = View(*renderer.view(), renderer.width, renderer.height)
         back = max(0, index - round(_TRAIL / footage.period))
         draw_trails(image, view, footage.poses[back : index + 1 : 3, :, :2], self._colours)

@@ -48,7 +48,7 @@ class Renderer:
         self._option.sitegroup[:] = 0
 
     def picture(self, data: mujoco.MjData, camera: Any) -> NDArray[np.uint8]:
-        """RGB picture, shape (height, width, 3).
+        """RGB picture, shape (height, width, 3), a new array.
 
         Args:
             data: State whose kinematics are up to date.

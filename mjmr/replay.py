@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from mjmr.store import Outcome
 
 FAILURE_SPEED = 0.25
-_CAPTION = 110  # characters that fit under a film
+_CAPTION = 145  # characters that fit under a film
 
 
 @dataclass(frozen=True)

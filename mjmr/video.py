@@ -38,9 +38,9 @@ class VideoWriter:
         self._container = av.open(
             str(self._partial), "w", format="mp4", options={"movflags": "+faststart"}
         )
-        self._stream = self._container.add_stream(
-            "libx264", rate=Fraction(fps), options={"preset": "veryfast", "crf": "21"}
-        )
+        # one thread: pictures take longer to render than to encode, and every thread takes memory
+        options = {"preset": "veryfast", "crf": "21", "threads": "1"}
+        self._stream = self._container.add_stream("libx264", rate=Fraction(fps), options=options)
         self._stream.width, self._stream.height = width, height
         self._stream.pix_fmt = "yuv420p"
         self.frames = 0

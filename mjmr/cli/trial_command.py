@@ -4,7 +4,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from tyro.conf import Positional
 
@@ -15,8 +15,10 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from mjmr.conditions import Condition
+    from mjmr.film_options import FilmOptions
     from mjmr.store import Outcome
     from mjmr.study import Study
+    from mjmr.trace import Trace
 
 _MORE = """
 EXAMPLES
@@ -63,40 +65,23 @@ def main(arguments: Sequence[str]) -> int:
     from mjmr.one_thread import one_thread_each
 
     with one_thread_each():  # as in a worker of mjmr run, for the same bits
-        from rich.console import Console
-
         from mjmr.conditions import parse_condition
-        from mjmr.executor import compute
         from mjmr.film_options import FilmOptions
-        from mjmr.parts import Job
-        from mjmr.progress import doing
-        from mjmr.recording import Recording
         from mjmr.registry import load_study
-        from mjmr.study_calls import call_study
-        from mjmr.trace import Trace, check_ending
-        from mjmr.watch import watching
+        from mjmr.study import condition_summary
+        from mjmr.trace import check_ending
 
         study = load_study(a.study)
         condition = parse_condition(study.parameters, a.condition)
         options = FilmOptions(camera=a.camera, look=a.look)
         film = None if a.film is None else _film_path(study, a.film, seed)
-        for path in (p for p in (film, a.trace) if p is not None):
-            _check_folder(path)
+        for path in filter(None, (film, a.trace)):
+            if not path.parent.is_dir():
+                raise InvalidInputError(f"cannot write {path}: there is no folder {path.parent}")
         if a.trace is not None:
             check_ending(a.trace)
-        prepare, messages = study.resolve("prepare"), Console(stderr=True)
-        study.resolve("trial")
-        seen: list[Any] = []
-        look_on = Trace if a.trace else Recording
-        with doing(messages, "running the trial ..."):
-            if prepare is not None:
-                call_study("prepare", prepare)
-            if film or a.trace:
-                with watching(lambda simulation: seen.append(look_on(simulation))):
-                    outcome = compute(Job(a.study, study.chosen), condition, seed)
-            else:
-                outcome = compute(Job(a.study, study.chosen), condition, seed)
-    title = _title(study, condition, seed)
+        traces, outcome = _run(a.study, study, condition, seed, look=bool(film or a.trace))
+    title = f"{study.name}: {condition_summary(condition, study.parameters)}, seed {seed}"
     if outcome.status == "ok":
         show(_table(title, outcome))
     else:
@@ -105,32 +90,64 @@ def main(arguments: Sequence[str]) -> int:
     code = 0 if outcome.status == "ok" else 1
     if not (film or a.trace):
         return code
-    if not seen or not len(_recording(seen[0])):
-        why = "the trial built no simulation, or never ticked it"
+    if not traces or not len(traces[0].recording):
+        why = "there is nothing to film or trace: the trial ticked no simulation"
         if code:
-            print(f"mjmr: no film or trace: {why}", file=sys.stderr)
+            print(f"mjmr: {why}", file=sys.stderr)
             return code
-        raise MjmrError(f"there is nothing to film or trace: {why}")
-    if len(seen) > 1:
-        print(f"the trial built {len(seen)} simulations; film and trace show the first")
+        raise MjmrError(why)
+    if len(traces) > 1:
+        print(f"the trial built {len(traces)} simulations; film and trace show the first")
     if a.trace is not None:
         facts = {"study": study.name, "condition": dict(condition), "seed": seed}
-        seen[0].save(a.trace, {**facts, "error": outcome.error})
+        traces[0].save(a.trace, {**facts, "error": outcome.error})
         print(f"trace: {a.trace}")
-        for name, why in seen[0].left_out.items():
+        for name, why in traces[0].left_out.items():
             print(f"  without the samples of {name}: {why}")
-    if film is not None:
-        from mjmr.replay import Replay, write_film
-
-        replay = Replay(_recording(seen[0]).footage(), title, None, outcome.error)
-        try:
-            with doing(messages, "making the film ..."):
-                write_film(replay, film, options)
-        except MissingGLError:
-            print(f"mjmr: {GL_ADVICE}", file=sys.stderr)
-            return 1
-        print(f"film: {film}")
+    if film is not None and not _write_film(traces[0], title, film, options):
+        return 1
     return code
+
+
+def _run(
+    name: str, study: "Study", condition: "Condition", seed: int, look: bool
+) -> "tuple[list[Trace], Outcome]":
+    """Run the trial as a worker does; traces of its simulations if somebody wants to look."""
+    from rich.console import Console
+
+    from mjmr.executor import compute
+    from mjmr.parts import Job
+    from mjmr.progress import doing
+    from mjmr.study_calls import call_study
+    from mjmr.trace import Trace
+    from mjmr.watch import watching
+
+    prepare = study.resolve("prepare")
+    study.resolve("trial")  # a study that cannot be imported is bad input, not a failed trial
+    traces: list[Trace] = []
+    with doing(Console(stderr=True), "running the trial ..."):
+        if prepare is not None:
+            call_study("prepare", prepare)
+        with watching(lambda s: traces.append(Trace(s)) if look else None):
+            outcome = compute(Job(name, study.chosen), condition, seed)
+    return traces, outcome
+
+
+def _write_film(trace: "Trace", title: str, path: Path, options: "FilmOptions") -> bool:
+    """Write the film and say where; False if there is no OpenGL."""
+    from rich.console import Console
+
+    from mjmr.progress import doing
+    from mjmr.replay import Replay, write_film
+
+    try:
+        with doing(Console(stderr=True), "making the film ..."):
+            write_film(Replay(trace.recording.footage(), title, None, ""), path, options)
+    except MissingGLError:
+        print(f"mjmr: {GL_ADVICE}", file=sys.stderr)
+        return False
+    print(f"film: {path}")
+    return True
 
 
 def _film_alone(arguments: Sequence[str]) -> list[str]:
@@ -153,21 +170,6 @@ def _film_path(study: "Study", given: str, seed: int) -> Path:
     except OSError as e:
         raise MjmrError(f"cannot write to {path.parent}: {e.strerror}") from e
     return path
-
-
-def _check_folder(path: Path) -> None:
-    if not path.parent.is_dir():
-        raise InvalidInputError(f"cannot write {path}: there is no folder {path.parent}")
-
-
-def _recording(seen: Any) -> Any:
-    return getattr(seen, "recording", seen)
-
-
-def _title(study: "Study", condition: "Condition", seed: int) -> str:
-    from mjmr.study import condition_summary
-
-    return f"{study.name}: {condition_summary(condition, study.parameters)}, seed {seed}"
 
 
 def _table(title: str, outcome: "Outcome") -> "Table":
