@@ -259,7 +259,8 @@ import pathlib, re
 from mjmr.bench import _film
 write = _film({panels}, 2.0)
 def mib(name):
-    return int(re.search(name + r":\\s+(\\d+)", pathlib.Path("/proc/self/status").read_text())[1]) / 1024
+    status = pathlib.Path("/proc/self/status").read_text()
+    return int(re.search(name + r":\\s+(\\d+)", status)[1]) / 1024
 before = mib("VmRSS")
 write()
 print(mib("VmHWM") - before)
