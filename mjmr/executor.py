@@ -204,6 +204,15 @@ def _trial_function(job: Job) -> Callable[..., Any]:
     return loaded.bound_trial()
 
 
+def make_ready(job: Job) -> None:
+    """Load and prepare a study here, as its first trial would.
+
+    Raises:
+        Exception: Whatever the study raises.
+    """
+    _trial_function(job)
+
+
 def compute(job: Job, condition: Condition, seed: int) -> Outcome:
     """Compute one trial, here; whatever goes wrong is in the outcome.
 

@@ -53,6 +53,12 @@ def trial(condition, seed):
     return {"x": float(poses[0, 0]), "y": float(poses[1, 1]), "yaw": float(poses[0, 2])}
 
 
+def prepare():
+    """Builds and ticks a simulation, as one does to have things compiled."""
+    for _ in Simulation(world()[0]).ticks(0.05):
+        pass
+
+
 def claims():
     return [
         Claim(
@@ -80,6 +86,7 @@ def _study(name, *grids):
         sizes=(Size("quick", grids, 1, 0.1),),
         trial="tests.toy_physics:trial",
         claims="tests.toy_physics:claims",
+        prepare="tests.toy_physics:prepare",
         source_packages=(),
     )
 

@@ -115,21 +115,20 @@ def _run(
     """Run the trial as a worker does; traces of its simulations if somebody wants to look."""
     from rich.console import Console
 
-    from mjmr.executor import compute
+    from mjmr.executor import compute, make_ready
     from mjmr.parts import Job
     from mjmr.progress import doing
     from mjmr.study_calls import call_study
     from mjmr.trace import Trace
     from mjmr.watch import watching
 
-    prepare = study.resolve("prepare")
+    job = Job(name, study.chosen)
     study.resolve("trial")  # a study that cannot be imported is bad input, not a failed trial
     traces: list[Trace] = []
     with doing(Console(stderr=True), "running the trial ..."):
-        if prepare is not None:
-            call_study("prepare", prepare)
+        call_study("prepare", make_ready, job)  # it may build simulations that are not the trial's
         with watching(lambda s: traces.append(Trace(s)) if look else None):
-            outcome = compute(Job(name, study.chosen), condition, seed)
+            outcome = compute(job, condition, seed)
     return traces, outcome
 
 

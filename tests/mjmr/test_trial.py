@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
+from mjmr import executor
 from mjmr.cli import main
 from mjmr.cli.trial_command import _film_alone
 from mjmr.runner import RunOptions, run_study
@@ -94,6 +95,15 @@ def test_a_trial_without_a_simulation(here, capsys):
     assert "nothing to film or trace" in said.err
     assert "x" in printed(said.out), "the metrics are shown all the same"
     assert not list(here.iterdir())
+
+
+def test_what_a_study_builds_to_prepare_is_not_the_trial(capsys):
+    """In a fresh process, as the command line is, the study is prepared in the same breath."""
+    executor._trial_function.cache_clear()
+    assert main(["trial", TOY, "duration=0.5", "--trace", "t.npz"]) == 0
+    assert "simulations" not in capsys.readouterr().out
+    with np.load("t.npz") as archive:
+        assert archive["times"][-1] == pytest.approx(0.5)
 
 
 def test_of_several_simulations_the_first_is_shown(capsys):
