@@ -6,6 +6,7 @@ is a pool of one process, so that a worker's death is always the death of one kn
 
 import contextlib
 import ctypes
+import dataclasses
 import functools
 import os
 import signal
@@ -13,9 +14,10 @@ import sys
 import threading
 import time
 import traceback
+import weakref
 from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -23,18 +25,12 @@ from typing import Any
 
 from mjmr.conditions import Condition
 from mjmr.errors import InvalidInputError, MissingGLError
+from mjmr.one_thread import one_thread_each
 from mjmr.parts import Job
 from mjmr.store import Outcome
 from mjmr.study import Trial
+from mjmr.watch import watching
 
-_ONE_THREAD = (
-    "OMP_NUM_THREADS",
-    "OPENBLAS_NUM_THREADS",
-    "MKL_NUM_THREADS",
-    "NUMBA_NUM_THREADS",
-    "NUMEXPR_NUM_THREADS",
-    "VECLIB_MAXIMUM_THREADS",
-)
 _POLL = 0.2  # [s] between looks at whether to stop
 
 
@@ -76,7 +72,7 @@ class LocalExecutor(Executor):
         fresh = (_Task(trial) for trial in trials)
         workers: list[_Worker] = []
         busy: dict[Future, tuple[_Worker, _Task]] = {}
-        with _one_thread_each():
+        with one_thread_each():
             try:
                 while not stop():
                     while len(busy) < self.workers:
@@ -179,21 +175,6 @@ def _start_pool() -> Any:
     return pool
 
 
-@contextlib.contextmanager
-def _one_thread_each() -> Iterator[None]:
-    """Let processes started inside use one thread each in BLAS, OpenMP and numba."""
-    before = {name: os.environ.get(name) for name in _ONE_THREAD}
-    os.environ.update(dict.fromkeys(_ONE_THREAD, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
-
-
 def _begin(parent: int) -> None:
     """First thing in a worker: no Ctrl-C, and no life without the driver, even after kill -9."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -223,27 +204,53 @@ def _trial_function(job: Job) -> Callable[..., Any]:
     return loaded.bound_trial()
 
 
+def make_ready(job: Job) -> None:
+    """Load and prepare a study here, as its first trial would.
+
+    Raises:
+        Exception: Whatever the study raises.
+    """
+    _trial_function(job)
+
+
 def compute(job: Job, condition: Condition, seed: int) -> Outcome:
     """Compute one trial, here; whatever goes wrong is in the outcome.
+
+    A trial that fails while its simulation runs brings a replay of the last second.
 
     Args:
         job: The study, and what was swapped in it.
         condition: Complete condition.
         seed: Seed of the trial.
     """
+    built: list[weakref.ref[Any]] = []  # they live as long as the trial, and in its traceback
     try:
         function = _trial_function(job)
         start = time.perf_counter()
-        returned = function(condition, seed)
+        with watching(lambda simulation: built.append(weakref.ref(simulation))):
+            returned = function(condition, seed)
         wall = {"wall_trial": time.perf_counter() - start}
         metrics = {str(name): _metric(name, value) for name, value in dict(returned).items()}
     except MissingGLError as e:
         return Outcome(condition, seed, "no-gl", error=_one_line(e))
     except Exception as e:
-        return _failed(condition, seed, e)
+        failed = _failed(condition, seed, e)
+        alive = [s for s in (reference() for reference in built) if s is not None]
+        return dataclasses.replace(failed, **_replay(job, failed, alive)) if alive else failed
     for name in [n for n in metrics if n.startswith("wall_")]:
         wall[name] = float(metrics.pop(name))
     return Outcome(condition, seed, "ok", metrics, wall)
+
+
+def _replay(job: Job, failed: Outcome, simulations: list[Any]) -> dict[str, Any]:
+    """The outcome's replay; where that cannot be made, its traceback with the reason."""
+    from mjmr.replay import failure_file
+
+    simulation = next((s for s in simulations if s.diverged), simulations[-1])
+    try:
+        return {"replay": failure_file(simulation, job, failed)}
+    except Exception as e:  # it must not hide why the trial failed
+        return {"traceback": f"{failed.traceback}\nno replay: {_one_line(e)}\n"}
 
 
 def _metric(name: object, value: Any) -> Any:

@@ -1,5 +1,6 @@
 """Films: recorded states rendered with overlays, side by side if there are several."""
 
+import copy
 import math
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -10,9 +11,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from mjmr.cart_servos import CartServos
 from mjmr.errors import InvalidInputError
 from mjmr.film_options import FilmOptions
+from mjmr.footage import Footage
 from mjmr.overlay import draw_notes, draw_text, draw_trails, palette
 from mjmr.recording import Recording
 from mjmr.render import Renderer
@@ -29,13 +30,12 @@ class Film:
     def __init__(self, title: str, options: FilmOptions | None = None):
         """Args: title: Written at the top. options: How it looks."""
         self.title, self.options = title, options or FilmOptions()
-        self._panels: list[tuple[Recording, str]] = []
+        self._panels: list[tuple[Footage, str]] = []
 
-    def add(self, recording: Recording, label: str = "") -> None:
-        """Add a panel to the right of those there are."""
-        if not len(recording):
-            raise InvalidInputError("this recording is empty; tick its simulation first")
-        self._panels.append((recording, label))
+    def add(self, shown: Recording | Footage, label: str = "") -> None:
+        """Add a panel to the right of those there are: what has been recorded by now."""
+        footage = shown.footage() if isinstance(shown, Recording) else shown
+        self._panels.append((footage, label))
 
     def write(self, path: str | Path) -> Path:
         """Render every frame and write the file; returns its path.
@@ -133,65 +133,65 @@ def overview_camera(
     return camera
 
 
+def _boxes_for_planes(model: mujoco.MjModel) -> None:
+    """Draw finite planes as flat boxes: the same pixels seen from above, in 4/5 of the time."""
+    thick = 0.01
+    planes = (model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE) & (model.geom_size[:, :2] > 0).all(1)
+    for k in np.flatnonzero(planes):
+        up = np.empty(3)
+        mujoco.mju_rotVecQuat(up, np.array([0.0, 0.0, 1.0]), model.geom_quat[k])
+        model.geom_type[k] = mujoco.mjtGeom.mjGEOM_BOX
+        model.geom_size[k, 2] = thick
+        model.geom_pos[k] -= thick * up
+        model.geom_sameframe[k] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
+        model.geom_rbound[k] = np.linalg.norm(model.geom_size[k])
+
+
 class _Panel:
     """One recording in one rectangle."""
 
-    def __init__(
-        self, recording: Recording, label: str, width: int, height: int, options: FilmOptions
-    ):
-        self._recording, self._label, self._options = recording, label, options
-        world, team = recording.world, recording.team
-        self._model = world.spec().compile()
+    def __init__(self, footage: Footage, label: str, width: int, height: int, options: FilmOptions):
+        self._footage, self._label, self._options = footage, label, options
+        self._model = copy.copy(footage.model)  # the renderer sets sizes and quality in it
+        if options.look == "draft":
+            _boxes_for_planes(self._model)
         self._data = mujoco.MjData(self._model)
-        self._drives = [(team.rows(g), g.platform.bind(self._model, g.prefixes))
-                        for g in world.groups]  # fmt: skip
-        self._mover_qpos = np.array(
-            [self._model.joint(name).qposadr[0] + np.arange(7) for name, _ in world.movers],
-            dtype=np.int64,
-        ).reshape(-1, 7)
-        self._carts = CartServos(self._model, world)
-        self._times, self._poses = recording.times, recording.poses
-        self._movers, self._positions = recording.movers, recording.positions
-        self._colours = palette(team.n)
+        self._colours = palette(len(footage.radii))
         self._renderer = Renderer(self._model, width, height, options.look)
         self._azimuth: float | None = None
-        self._overview = overview_camera(world.bounds, width / height, self._model)
+        self._overview = overview_camera(footage.bounds, width / height, self._model)
 
     def picture(self, time: float) -> NDArray[np.uint8]:
         """Picture at ``time`` [s], RGB."""
-        index = min(int(np.searchsorted(self._times, time - 1e-9)), len(self._times) - 1)
-        poses, model, data = self._poses[index], self._model, self._data
-        if self._positions is not None:
-            data.qpos[:] = self._positions[index]
-        else:
-            for rows, drive in self._drives:
-                drive.place(data, poses[rows])
-            data.qpos[self._mover_qpos] = self._movers[index]
-            self._carts.place(data, float(self._times[index]))
+        footage, model, data = self._footage, self._model, self._data
+        times = footage.times
+        index = min(int(np.searchsorted(times, time - 1e-9)), len(times) - 1)
+        poses = footage.poses[index]
+        data.qpos[:] = footage.positions[index]
         mujoco.mj_kinematics(model, data)
         mujoco.mj_camlight(model, data)
-        renderer, recording = self._renderer, self._recording
-        image = renderer.picture(data, self._camera(index)).copy()
+        renderer = self._renderer
+        image = renderer.picture(data, self._camera(index))
         view = renderer.view()
-        back = max(0, index - round(_TRAIL / recording.period))
-        draw_trails(image, view, self._poses[back : index + 1 : 3, :, :2], self._colours)
-        draw_notes(image, view, poses, recording.team.radii, recording.notes(index), self._colours)
+        back = max(0, index - round(_TRAIL / footage.period))
+        draw_trails(image, view, footage.poses[back : index + 1 : 3, :, :2], self._colours)
+        draw_notes(image, view, poses, footage.radii, footage.note(index), self._colours)
         heads = view.on_floor(poses[:, :2], z=0.16)
         for i, colour in enumerate(self._colours):
             draw_text(image, str(i), (heads[i, 0] + 14, heads[i, 1] - 10), 0.45, colour)
         draw_text(image, self._label, (14, 26), 0.6)
-        draw_text(image, recording.caption(index), (14, renderer.height - 14), 0.55)
+        draw_text(image, footage.caption(index), (14, renderer.height - 14), 0.55)
         return image
 
     def _camera(self, index: int) -> str | mujoco.MjvCamera:
-        options = self._options
+        options, tracks = self._options, self._footage.poses
         if options.camera == "overview":
             return self._overview
-        robot = min(options.follow, self._recording.team.n - 1)
-        x, y, yaw = self._poses[index, robot]
+        robot = min(options.follow, tracks.shape[1] - 1)
+        x, y, yaw = tracks[index, robot]
         # behind the direction of travel, which holonomic robots choose freely, turning slowly
         back = max(0, index - 10)
-        move = self._poses[index, robot, :2] - self._poses[back, robot, :2]
+        move = tracks[index, robot, :2] - tracks[back, robot, :2]
         azimuth = yaw if self._azimuth is None else self._azimuth
         if np.hypot(*move) > 0.02:
             aim = math.atan2(move[1], move[0])

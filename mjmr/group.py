@@ -145,6 +145,13 @@ class Group:
         self._command = twist
 
     @property
+    def command(self) -> Array:
+        """The command in force, (n, 3), body frame, scaled down to the limits; read-only."""
+        view = self._command.view()
+        view.setflags(write=False)
+        return view
+
+    @property
     def executed(self) -> Array:
         """Twist the drives' set points have reached, (n, 3), body frame: telemetry.
 

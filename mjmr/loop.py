@@ -95,6 +95,7 @@ class TickedSimulation(ABC):
         noted: True if somebody keeps what :meth:`note` says; saves computing it otherwise.
         notes: What was noted last; see :meth:`note`.
         caption: Returns a line of text for films; it may read truth.
+        diverged: True once the physics has left the plausible range.
     """
 
     def __init__(
@@ -116,6 +117,7 @@ class TickedSimulation(ABC):
         self.noted = False
         self.notes: dict[str, Array] = {}
         self.caption: Callable[[], str] = str
+        self.diverged = False
         self._observers: list[Callable[[], None]] = []
         self._started = False
         self._studio: Studio | None = None

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mjmr.errors import MjmrError
+from mjmr.errors import InvalidInputError, MjmrError
+from mjmr.footage import Footage
 from mjmr.watch import watching
 
 if TYPE_CHECKING:
@@ -83,6 +84,49 @@ class Recording:
     def positions(self) -> Array | None:
         """Every coordinate of the physics, shape (k, nq); None of a kinematic simulation."""
         return np.stack(self._positions) if self._positions else None
+
+    def footage(self) -> Footage:
+        """What was recorded so far, as films show it.
+
+        Raises:
+            InvalidInputError: Nothing was recorded.
+        """
+        if not self._times:
+            raise InvalidInputError("this recording is empty; tick its simulation first")
+        model = getattr(self._simulation, "model", None) or self.world.spec().compile()
+        positions = self.positions
+        return Footage(
+            model=model,
+            bounds=self.world.bounds,
+            radii=self.team.radii,
+            period=self.period,
+            times=self.times,
+            positions=self._placed(model) if positions is None else positions,
+            poses=self.poses,
+            notes=list(self._notes),
+            captions=list(self._captions),
+        )
+
+    def _placed(self, model: Any) -> Array:
+        """``qpos`` (k, nq) of a kinematic simulation: robots and props put where they were."""
+        import mujoco
+
+        from mjmr.cart_servos import CartServos
+
+        data = mujoco.MjData(model)
+        team = self.team
+        drives = [(team.rows(g), g.platform.bind(model, g.prefixes)) for g in team.groups]
+        first = [model.joint(name).qposadr[0] for name, _ in self.world.movers]
+        carts = CartServos(model, self.world)
+        props = np.array(first, dtype=np.int64).reshape(-1, 1) + np.arange(7)
+        positions = np.empty((len(self), model.nq))
+        for k, (poses, movers) in enumerate(zip(self._poses, self._movers, strict=True)):
+            for rows, drive in drives:
+                drive.place(data, poses[rows])
+            data.qpos[props] = movers
+            carts.place(data, self._times[k])
+            positions[k] = data.qpos
+        return positions
 
     def notes(self, index: int) -> dict[str, Array]:
         """What was noted for record ``index``."""

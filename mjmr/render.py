@@ -54,6 +54,7 @@ class Renderer:
             # a lamp shades corners only, and what lies between is interpolated
             lamps = model.light_type != mujoco.mjtLightType.mjLIGHT_DIRECTIONAL
             quality.numquads = _LAMP_QUADS if lamps.any() else 1
+            quality.shadowsize = 0  # the map would take 64 MiB in every context
         _free_forgotten()
         try:
             self._renderer = mujoco.Renderer(model, height, width)
@@ -71,7 +72,7 @@ class Renderer:
         self._option.sitegroup[:] = 0
 
     def picture(self, data: mujoco.MjData, camera: Any) -> NDArray[np.uint8]:
-        """RGB picture, shape (height, width, 3).
+        """RGB picture, shape (height, width, 3), a new array.
 
         Args:
             data: State whose kinematics are up to date.

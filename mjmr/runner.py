@@ -1,7 +1,7 @@
 """Running a study: trials, claims, files. The only writer of a results folder.
 
 What a run leaves in its folder: ``results.sqlite`` (every trial), ``claims.json``, ``claims.md``,
-``run.json`` (what was run, by which code), plots as SVG, ``film.mp4``.
+``run.json`` (what was run, by which code), plots as SVG, ``film.mp4``, ``failures/`` (replays).
 """
 
 import contextlib
@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 from mjmr.claims import Verdict, judge_all
 from mjmr.conditions import parse_filter
 from mjmr.errors import GL_ADVICE, InvalidInputError, MissingGLError, MjmrError
+from mjmr.failures import failure_path, keep_replay
 from mjmr.files import write_atomically
 from mjmr.film_options import FilmOptions
 from mjmr.parts import Job, PartChoice
@@ -173,7 +174,7 @@ def run_study(
         return run.interrupted(None)
     except OSError as e:
         raise MjmrError(f"run in {folder} stopped: {e}") from e
-    failed = _tell_failures(messages, asked, verdicts)
+    failed = _tell_failures(messages, folder, asked, verdicts)
     for trouble in troubles:
         say(messages, trouble)
     found = committed.differences(expected, verdicts) if options.check else []
@@ -245,6 +246,7 @@ class _Run:
             contextlib.closing(executor.run(job, pending, stopped)) as outcomes,
         ):
             for outcome in outcomes:
+                keep_replay(self.folder, outcome)
                 store.record(outcome)
                 self.done += 1
                 self.computed += 1
@@ -383,11 +385,15 @@ def _print_verdicts(
             console.print(line, style="dim")
 
 
-def _tell_failures(messages: "Console", table: Table, verdicts: Sequence[Verdict]) -> bool:
+def _tell_failures(
+    messages: "Console", folder: Path, table: Table, verdicts: Sequence[Verdict]
+) -> bool:
     """Say which trials did not finish and which claims could not be evaluated; True if any."""
     lost = [row for row in table.fresh().rows if row.status != "ok"]
     for row in lost[:5]:
         say(messages, f"trial failed: {row.condition} seed {row.seed}: {row.error}")
+        if (replay := failure_path(folder, row.condition, row.seed)).exists():
+            say(messages, f"replay with: {shlex.join(['mjmr', 'replay', str(replay)])}")
     if len(lost) > 5:
         say(messages, f"... and {len(lost) - 5} more; mjmr export lists them all")
     if any(row.status == "no-gl" for row in lost):

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from mjmr.cart_servos import CartServos
 from mjmr.errors import InvalidInputError, SimulationDivergedError
 from mjmr.guard import plausible
+from mjmr.last_second import LastSecond
 from mjmr.loop import Snapshot, TickedSimulation
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ class Simulation(TickedSimulation):
     Attributes:
         model: The compiled model.
         data: Its state; not to be written to while ticking.
+        last_second: Its states at the control instants of the last second.
     """
 
     def __init__(
@@ -94,6 +96,8 @@ class Simulation(TickedSimulation):
         self._warnings = int(self._warning_counts.sum())
         self._history: deque[Snapshot] = deque(maxlen=10)
         self._ticks_done = 0
+        self.last_second = LastSecond(self.model, self.data, self.control_period)
+        self.last_second.keep(0.0)
         self._bind()
 
     def poses_of(self, group: "Group") -> Array:
@@ -131,6 +135,9 @@ class Simulation(TickedSimulation):
         super().restore(snapshot)
         self._warnings = int(self._warning_counts.sum())
         self._history.clear()
+        self.diverged = False
+        self.last_second.clear()
+        self.last_second.keep(self.time)
 
     def _begin_period(self) -> None:
         time, period, data = self.time, self.control_period, self.data
@@ -152,12 +159,14 @@ class Simulation(TickedSimulation):
 
     def _end_period(self) -> None:
         if not plausible(self._qpos, self._bounds, self._warning_counts, self._warnings):
-            raise self._diverged()
+            self.diverged = True
+            raise self._divergence()
+        self.last_second.keep(self.step * self.timestep)
         self._ticks_done += 1
         if self._ticks_done % 6 == 0:
             self._history.append(self.snapshot())
 
-    def _diverged(self) -> SimulationDivergedError:
+    def _divergence(self) -> SimulationDivergedError:
         data = self.data
         counts = data.warning.number
         names = [mujoco.mjtWarning(i).name for i in np.flatnonzero(counts)]

@@ -72,6 +72,8 @@ class Outcome:
         wall: Wall-clock times by name [s, unless the name says otherwise].
         error: One line about a failure.
         traceback: Where it failed.
+        replay: Content of a file that ``mjmr replay`` reads; empty if there is none. It is
+            written beside the results, not into them.
     """
 
     condition: Condition
@@ -81,6 +83,7 @@ class Outcome:
     wall: Mapping[str, float] = field(default_factory=dict)
     error: str = ""
     traceback: str = ""
+    replay: bytes = b""
 
 
 class Store:

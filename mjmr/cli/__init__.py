@@ -12,6 +12,8 @@ COMMANDS = {
     "show": "a study's paper, conditions, claims, bounds, and what each size costs",
     "run": "run a study and say claim by claim whether the paper holds",
     "compare": "set two runs of a study against each other, seed by seed",
+    "trial": "run one trial: its metrics, a film, a trace",
+    "replay": "film a trace, or the last second of a trial that failed",
     "film": "make a study's film",
     "mjcf": "write the MuJoCo model of one of a study's conditions",
     "bench": "measure speed",
@@ -38,10 +40,12 @@ EXAMPLES
   mjmr run safe-navigation --size standard --check
   mjmr run safe-navigation --only sigma_mm=0,4 --seeds 10 --out renders/trial
   mjmr run safe-navigation --with navigator=dash.py:Dash
+  mjmr trial safe-navigation scene=cross4 --seed 7 --film
 
 FILES
   renders/STUDY/SIZE/   what a run leaves: results.sqlite, claims.json, claims.md, run.json,
-                        plots, film.mp4; with swapped parts in renders/STUDY/SIZE+ROLE=Class/
+                        plots, film.mp4, failures/; with swapped parts in
+                        renders/STUDY/SIZE+ROLE=Class/
 
 ENVIRONMENT
   MJMR_DEBUG=1     show tracebacks

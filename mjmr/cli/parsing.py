@@ -86,16 +86,16 @@ def parse(command: type[T], name: str, arguments: Sequence[str], more_help: str)
         raise InvalidInputError(f"{_sentence(complaint.getvalue())}; see {prog} --help") from None
 
 
-def whole_number(name: str, text: str | None) -> int | None:
+def whole_number(name: str, text: str | None, least: int = 1) -> int | None:
     """The number an option was given; None stays None.
 
     Raises:
-        InvalidInputError: Not a whole number of at least 1.
+        InvalidInputError: Not a whole number of at least ``least``.
     """
     if text is None:
         return None
-    if not re.fullmatch(r"0*[1-9]\d{0,8}", text):
-        raise InvalidInputError(f"{name} must be a whole number of at least 1, not {text!r}")
+    if not re.fullmatch(r"0*\d{1,9}", text, re.ASCII) or int(text) < least:
+        raise InvalidInputError(f"{name} must be a whole number of at least {least}, not {text!r}")
     return int(text)
 
 

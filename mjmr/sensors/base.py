@@ -3,7 +3,7 @@
 import math
 from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -59,6 +59,7 @@ class Sensor(ABC):
         self.rate, self.latency, self.phase = float(rate), float(latency), float(phase)
         self.carrier: Group | None = None
         self._simulation: TickedSimulation | None = None
+        self._listener: Callable[[_Sample], None] | None = None
 
     def bind(self, simulation: "TickedSimulation", group: "Group | None", stream: str) -> None:
         """Start afresh in ``simulation``; called once by it.
@@ -72,6 +73,7 @@ class Sensor(ABC):
         self._group: Any = group
         self._samples: deque[_Sample] = deque()
         self._next_number = 0
+        self._listener = None
         self._latency_steps = simulation.steps_until(self.latency)
         self.due_step = simulation.steps_until(self.phase)
         self.prepare(simulation.streams.sequence(stream), group)
@@ -81,7 +83,10 @@ class Sensor(ABC):
         assert self._simulation is not None
         number = self._next_number
         state = self.observe(time)
-        self._samples.append(_Sample(number, time, step + self._latency_steps, state))
+        sample = _Sample(number, time, step + self._latency_steps, state)
+        self._samples.append(sample)
+        if self._listener is not None:
+            self._listener(sample)
         self._next_number = number + 1
         self.due_step = max(
             step + 1, self._simulation.steps_until(self.phase + (number + 1) / self.rate)
@@ -100,11 +105,26 @@ class Sensor(ABC):
         if sample is None:
             value = self.nothing()
         else:
-            if sample.value is None:
-                sample.value = self.compute(sample.state, sample.number)
-            value = sample.value.view()
+            value = self._value(sample).view()
         value.setflags(write=False)
         return value
+
+    def follow(
+        self, hear: Callable[[int, float, float, Callable[[], NDArray[np.float64]]], None]
+    ) -> None:
+        """Call ``hear(number, sampled, delivered, value)`` at every sample to come; for traces.
+
+        Instants are in seconds. ``value()`` computes the sample, which changes nothing for those
+        who read it later.
+        """
+        simulation = self._simulation
+        assert simulation is not None
+
+        def listen(sample: _Sample) -> None:
+            delivered = sample.ready_step * simulation.timestep
+            hear(sample.number, sample.time, delivered, lambda: self._value(sample))
+
+        self._listener = listen
 
     @property
     def sampled_at(self) -> float:
@@ -149,6 +169,11 @@ class Sensor(ABC):
     @abstractmethod
     def nothing(self) -> NDArray[Any]:
         """What is read before the first delivery."""
+
+    def _value(self, sample: _Sample) -> NDArray[np.float64]:
+        if sample.value is None:
+            sample.value = self.compute(sample.state, sample.number)
+        return sample.value
 
     def _newest(self) -> _Sample | None:
         if self._simulation is None:

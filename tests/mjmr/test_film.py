@@ -2,9 +2,11 @@
 
 import av
 import cv2
+import mujoco
 import numpy as np
 import pytest
 
+from mjmr.bench import films
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.film import Film, overview_camera
 from mjmr.film_options import FilmOptions
@@ -14,6 +16,7 @@ from mjmr.overlay import draw_ring
 from mjmr.recording import Recording
 from mjmr.render import Renderer
 from mjmr.simulation import Simulation
+from mjmr.video import VideoWriter
 from tests.mjmr.worlds import soccer
 
 
@@ -134,3 +137,42 @@ def test_notes_are_checked():
         recording.note(goals=[[0, 0]])
     with pytest.raises(InvalidInputError, match="at least one"):
         Film("t").still(0.0)
+
+
+def test_drafts_draw_the_floor_as_a_box_and_nobody_can_tell(monkeypatch):
+    footage = record().footage()
+    stills = []
+    for camera in ("overview", "chase"):
+        for plain in (False, True):
+            with monkeypatch.context() as patch:
+                if plain:
+                    patch.setattr("mjmr.film._boxes_for_planes", lambda model: None)
+                film = Film("t", FilmOptions(width=640, height=480, camera=camera))
+                film.add(footage)
+                stills.append(film.still(0.5))
+    assert (stills[0] != stills[2]).any()
+    np.testing.assert_array_equal(stills[0], stills[1])
+    assert (cv2.absdiff(stills[2], stills[3]).max(axis=2) > 8).mean() < 1e-3
+    planes = footage.model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE
+    assert planes.sum() == 1, "the model that was simulated keeps its plane"
+
+
+def test_colours_survive_the_file(tmp_path):
+    colours = [(230, 30, 30), (30, 230, 30), (30, 30, 230), (240, 240, 240), (20, 90, 40)]
+    picture = np.zeros((240, 320, 3), np.uint8)
+    for k, colour in enumerate(colours):
+        picture[:, 64 * k : 64 * (k + 1)] = colour
+    with VideoWriter(tmp_path / "c.mp4", 320, 240) as video:
+        for _ in range(3):
+            video.write(picture)
+    with av.open(str(tmp_path / "c.mp4")) as container:
+        seen = next(container.decode(video=0)).to_ndarray(format="rgb24")
+    for k, colour in enumerate(colours):
+        np.testing.assert_allclose(seen[120, 64 * k + 32], colour, atol=4)
+
+
+def test_the_benchmark_of_films_says_what_it_measured():
+    title, one, two = films(seconds=0.2, rounds=1)
+    assert "1280 x 720, draft, 6 frames" in title
+    assert "1 panel(s)" in one
+    assert float(two.split(": ")[1].split(" [")[0]) > 0.5
