@@ -39,9 +39,9 @@ def build(condition: Mapping[str, Any], seed: int) -> tuple[World, Group, Scene,
     sigma = condition["sigma_mm"] / 1000.0
     place = scene(condition["scene"])
     starts = place.starts
-    yaw = np.zeros(len(starts))
+    headings = np.zeros(len(starts))
     if condition["scene"] == "straight":
-        yaw = Streams(seed).generator("yaw").uniform(-np.pi, np.pi, len(starts))
+        headings = Streams(seed).generator("yaw").uniform(-np.pi, np.pi, len(starts))
     elif condition["scene"] != "overlap":
         starts = starts + Streams(seed).generator("starts").uniform(-_SPREAD, _SPREAD, starts.shape)
     lighting = "uneven" if condition["sensing"] == "vision" else "even"
@@ -57,7 +57,7 @@ def build(condition: Mapping[str, Any], seed: int) -> tuple[World, Group, Scene,
         world.mount(CartReport(rate=60.0, position_noise=sigma))
     robots = world.add_group(
         SoccerBot(condition["drive"]),
-        np.column_stack([starts, yaw]),
+        np.column_stack([starts, headings]),
         command_latency=condition["latency"],
     )
     lossy = condition["failure"] == "reports-lost"
