@@ -369,8 +369,7 @@ def _row(trial: Trial, outcome: Outcome | None) -> Row:
 
 def _told(study: Study, size: str) -> str:
     """What was run, as titles say it."""
-    swapped = "".join(f", with {choice}" for choice in study.chosen)
-    return f"{study.name}, size {size}{swapped}"
+    return f"{study.name}, size {size}{study.swapped}"
 
 
 def _print_verdicts(

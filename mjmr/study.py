@@ -201,6 +201,11 @@ class Study:
         Parts([part for part in self.parts if part.role in taken], choices)
         return dataclasses.replace(self, chosen=tuple(choices))
 
+    @property
+    def swapped(self) -> str:
+        """What was swapped, for titles: ``", with ROLE=REFERENCE"`` for each; empty if nothing."""
+        return "".join(f", with {choice}" for choice in self.chosen)
+
     def bound_trial(self) -> Callable[..., Any]:
         """The trial as ``(condition, seed) -> metrics``, with its parts bound to it.
 

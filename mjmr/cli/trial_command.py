@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING, Annotated
 
 from tyro.conf import Positional
 
-from mjmr.cli.parsing import StudyName, option, parse, show, whole_number
+from mjmr.cli.parsing import (
+    PartTexts,
+    StudyName,
+    option,
+    parse,
+    part_choices,
+    show,
+    whole_number,
+)
 from mjmr.errors import GL_ADVICE, InvalidInputError, MissingGLError, MjmrError
 
 if TYPE_CHECKING:
@@ -25,6 +33,7 @@ EXAMPLES
   mjmr trial safe-navigation
   mjmr trial safe-navigation mode=physical scene=cross4 --seed 7 --film
   mjmr trial safe-navigation --film crossing.mp4 --trace crossing.npz
+  mjmr trial safe-navigation scene=cross4 --with navigator=dash.py:Dash --film
 
 EXIT CODES
   0  the trial finished
@@ -54,6 +63,7 @@ class Trial:
         Path | None,
         option("FILE", "Write a trace that ends in .npz or .parquet.", "no trace"),
     ] = None
+    with_: PartTexts = ()
     camera: Annotated[str, option("CAMERA", "overview or chase.", "overview")] = "overview"
     look: Annotated[str, option("LOOK", "draft (fast) or fine.", "draft")] = "draft"
 
@@ -71,7 +81,7 @@ def main(arguments: Sequence[str]) -> int:
         from mjmr.study import condition_summary
         from mjmr.trace import check_ending
 
-        study = load_study(a.study)
+        study = load_study(a.study).choose(part_choices(a.with_))
         condition = parse_condition(study.parameters, a.condition)
         options = FilmOptions(camera=a.camera, look=a.look)
         film = None if a.film is None else _film_path(study, a.film, seed)
@@ -81,7 +91,8 @@ def main(arguments: Sequence[str]) -> int:
         if a.trace is not None:
             check_ending(a.trace)
         traces, outcome = _run(a.study, study, condition, seed, look=bool(film or a.trace))
-    title = f"{study.name}: {condition_summary(condition, study.parameters)}, seed {seed}"
+    told = condition_summary(condition, study.parameters)
+    title = f"{study.name}{study.swapped}: {told}, seed {seed}"
     if outcome.status == "ok":
         show(_table(title, outcome))
     else:
@@ -99,7 +110,8 @@ def main(arguments: Sequence[str]) -> int:
     if len(traces) > 1:
         print(f"the trial built {len(traces)} simulations; film and trace show the first")
     if a.trace is not None:
-        facts = {"study": study.name, "condition": dict(condition), "seed": seed}
+        swapped = [str(choice) for choice in study.chosen]
+        facts = {"study": study.name, "parts": swapped, "condition": dict(condition), "seed": seed}
         traces[0].save(a.trace, {**facts, "error": outcome.error})
         print(f"trace: {a.trace}")
         for name, why in traces[0].left_out.items():
