@@ -149,7 +149,7 @@ def check_film(folder: Path) -> None:
 def kill_a_worker(driver: subprocess.Popen, moments: random.Random) -> bool:
     """SIGKILL one of a driver's workers, somewhere in its trials; False if there is none left."""
     process = psutil.Process(driver.pid)
-    time.sleep(moments.uniform(0.3, 1.0))
+    time.sleep(moments.uniform(1.0, 3.0))
     with contextlib.suppress(psutil.Error):
         workers = [p for p in spawned(process) if p.cpu_times().user > 0.3]
         if workers:
@@ -175,8 +175,11 @@ def series(
     if phase == "compile":
         cache = place / "cold"
     done, runs, seen = 0, 0, 0
+    if phase == "worker":  # chance may kill two workers at one trial, which then counts as failed
+        words = (*words, "--retry")
     while True:
-        wanted = phase if done < kills and phase != "worker" else "none"
+        killing = done < kills
+        wanted = phase if killing and phase != "worker" else "none"
         count = moments.randint(1, 3) if phase != "film" else moments.randint(1, 60)
         driver = start(folder, study, words, wanted, count, cache)
         runs += 1
@@ -188,6 +191,8 @@ def series(
             seen += len(leftovers(folder)) + (len(leftovers(cache)) if phase == "compile" else 0)
             continue
         assert code in (0, 1), folder.with_suffix(".log").read_text()[-2000:]
+        if done >= kills and phase == "worker" and killing:
+            continue  # the same command once more computes what may have failed
         if done >= kills:
             break
         assert phase != "compile", f"all is compiled after {done} kills"

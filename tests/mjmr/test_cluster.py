@@ -104,7 +104,7 @@ def test_workers_that_die_and_join_lose_and_repeat_nothing(tmp_path):
             outcomes.append(outcome)
             if len(outcomes) == 20:
                 found.add(1, TOY_SLEEP="0.1", TOY_LOG=str(tmp_path / "log"))
-            if len(outcomes) in (5, 10, 40) and (alive := found.worker_processes()):
+            if len(outcomes) in (5, 35, 65) and (alive := found.worker_processes()):
                 alive[0].send_signal(signal.SIGKILL)
                 kills += 1
     assert kills == 3
