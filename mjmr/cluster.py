@@ -82,14 +82,22 @@ class DaskExecutor(Executor):
         """See :meth:`Executor.run`; a trial whose worker died twice comes back as failed.
 
         Raises:
-            MjmrError: No answer, no worker or an unfit one, before the first trial; the scheduler
-                was lost, later.
+            MjmrError: At once: no answer, no worker or an unfit one. From the iteration: the
+                scheduler is lost.
         """
         logging.getLogger("distributed").setLevel(logging.CRITICAL)
-        with _connected(self.address) as client, _losing(self.address):
+        with contextlib.ExitStack() as stack:
+            client = stack.enter_context(_connected(self.address))
+            stack.enter_context(_losing(self.address))
             crew = _Crew(client, job, self)
             crew.gather(stop)
-            yield from crew.work(trials, stop)
+            connection = stack.pop_all()
+
+        def outcomes() -> Generator[Outcome, None, None]:
+            with connection:
+                yield from crew.work(trials, stop)
+
+        return outcomes()
 
 
 def answer(

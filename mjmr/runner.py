@@ -234,8 +234,8 @@ class _Run:
         job = Job(self.options.study, self.study.chosen)
         with (
             _interrupts() as stopped,
-            Progress(self.messages, self.done, len(self.trials)) as progress,
             contextlib.closing(executor.run(job, pending, stopped)) as outcomes,
+            Progress(self.messages, self.done, len(self.trials)) as progress,
         ):
             for outcome in outcomes:
                 store.record(outcome)

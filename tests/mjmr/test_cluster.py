@@ -2,6 +2,7 @@ import json
 import os
 import signal
 import socket
+import subprocess
 import sys
 import sysconfig
 import threading
@@ -176,6 +177,22 @@ def test_a_cluster_and_workers_exclude_each_other(capsys, tmp_path):
     assert "--cluster and --workers exclude each other" in capsys.readouterr().err
 
 
+def test_no_answer_is_one_sentence_and_exit_2(capsys, tmp_path, monkeypatch):
+    monkeypatch.setattr(cluster, "CONNECT_SECONDS", 1.0)
+    address = f"tcp://127.0.0.1:{free_port()}"
+    words = ["run", TOY, "--no-film", "--out", str(tmp_path / "out"), "--cluster", address]
+    assert main(words) == 2
+    told = capsys.readouterr().err
+    assert told.startswith(f"mjmr: no answer from a Dask scheduler at {address} within 1 s")
+    assert told.count("\n") == 1
+    command = [sys.executable, "-c", "import sys; from mjmr.cli import main; sys.exit(main())"]
+    begin = time.monotonic()
+    done = subprocess.run([*command, *words], stderr=subprocess.PIPE, text=True)
+    assert done.returncode == 2
+    assert "within 10 s" in done.stderr
+    assert time.monotonic() - begin < 18.0  # with what importing takes, and leaving
+
+
 def test_without_dask_it_says_what_to_install(monkeypatch, capsys, tmp_path):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     words = ["run", TOY, "--out", str(tmp_path / "out"), "--cluster", "tcp://host:8786"]
@@ -295,8 +312,6 @@ def test_one_worker_two_and_a_cluster_give_the_same_bits_in_physics(tmp_path):
 
 
 def test_a_killed_driver_leaves_the_cluster_usable(tmp_path):
-    import subprocess
-
     with Cluster(tmp_path, 1, TOY_SLEEP="0.2") as found:
         words = ["run", TOY, "--no-film", "--out", str(tmp_path / "out")]
         code = "import sys; from mjmr.cli import main; sys.exit(main())"
