@@ -29,7 +29,7 @@ from mjmr.store import Outcome
 from mjmr.study import Trial
 
 CONNECT_SECONDS = 10.0  # wall time an answer, and then a first worker, is waited for
-_CHECK_SECONDS = 120.0  # wall time a worker may take to import a study
+CHECK_SECONDS = 120.0  # wall time a worker may take to import a study
 _POLL = 0.2  # [s] between looks at whether to stop
 _LOOK = 1.0  # [s] between looks at who is there
 _AHEAD = 2  # trials placed on a worker
@@ -337,7 +337,15 @@ class _Crew:
         workers = list(addresses)
         if not workers:
             return {}
-        return self.client.run(eval, text, names, workers=workers, on_error="return")
+
+        def ask() -> dict[str, Any]:
+            return self.client.run(eval, text, names, workers=workers, on_error="return")
+
+        found = _within(CHECK_SECONDS, ask)
+        if isinstance(found, dict):
+            return found
+        late = MjmrError(f"no answer within {CHECK_SECONDS:g} s")
+        return dict.fromkeys(workers, late if found is None else found)
 
 
 def _dead(task: _Task) -> Outcome:
@@ -362,35 +370,37 @@ def _connected(address: str) -> Iterator[Any]:
     """A client; it comes within :data:`CONNECT_SECONDS`, whatever is at the address."""
     from distributed import Client
 
-    found: list[Any] = []
-
-    def connect() -> None:
-        try:
-            client = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
-            if late.is_set():
-                client.close(timeout=1)
-            found.append(client)
-        except Exception as e:
-            found.append(e)
-
-    late = threading.Event()
     # Dask bounds connecting, but not the talk after it; what listens there may not be Dask.
-    thread = threading.Thread(target=connect, daemon=True)
-    thread.start()
-    thread.join(CONNECT_SECONDS)
-    late.set()
-    if not found or isinstance(found[0], Exception):
-        why = f" ({_reason(found[0])})" if found and not isinstance(found[0], OSError) else ""
+    client = _within(
+        CONNECT_SECONDS, lambda: Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
+    )
+    if client is None or isinstance(client, Exception):
+        why = f" ({_reason(client)})" if client and not isinstance(client, OSError) else ""
         raise MjmrError(
             f"no answer from a Dask scheduler at {address} within {CONNECT_SECONDS:g} s{why}; "
             "start one with: dask scheduler"
         )
-    client = found[0]
     try:
         yield client
     finally:
         with contextlib.suppress(Exception):
             client.close(timeout=2)
+
+
+def _within(seconds: float, function: Callable[[], Any]) -> Any:
+    """What a function returns or raises; None if that takes longer, and it is then left alone."""
+    found: list[Any] = []
+
+    def call() -> None:
+        try:
+            found.append(function())
+        except Exception as e:
+            found.append(e)
+
+    thread = threading.Thread(target=call, daemon=True)
+    thread.start()
+    thread.join(seconds)
+    return found[0] if found else None
 
 
 @contextlib.contextmanager

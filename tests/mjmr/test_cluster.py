@@ -231,6 +231,18 @@ def test_no_workers_is_told_after_a_while(monkeypatch, tmp_path):
         assert 3.0 <= seconds < 8.0
 
 
+def test_a_worker_that_hangs_is_told(monkeypatch, tmp_path):
+    monkeypatch.setattr(cluster, "CHECK_SECONDS", 2.0)
+    with Cluster(tmp_path) as found:
+        worker = found.add(1, "--no-nanny")
+        found.wait_for(1)
+        worker.send_signal(signal.SIGSTOP)
+        text, seconds = refused(found.address)
+        assert text.startswith("worker tcp://127.0.0.1:")
+        assert "no answer within 2 s" in text
+        assert seconds < 12.0
+
+
 def test_workers_with_threads_are_refused(tmp_path):
     with Cluster(tmp_path) as found:
         found.add(1, "--nthreads", "3")
