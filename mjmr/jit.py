@@ -6,8 +6,11 @@ speak of ``njit``: another source, another folder. Compiled functions take funct
 from such files only.
 """
 
+import contextlib
+import fcntl
 import functools
 import os
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -42,4 +45,36 @@ def njit(function: Any = None, **options: Any) -> Any:
     config.CACHE_DIR = str(cache_folder())  # pyright: ignore[reportAttributeAccessIssue]
     # A module built from text has no file, and its text may be newer or older than one on disk.
     cache = "__file__" in function.__globals__
-    return numba.njit(cache=cache, error_model="numpy", **options)(function)
+    compiled = numba.njit(cache=cache, error_model="numpy", **options)(function)
+    _save_alone(compiled)
+    return compiled
+
+
+def _save_alone(compiled: Any) -> None:
+    """Let one process at a time save to the cache.
+
+    Numba's files are whole or not there, but it reads the index of a function's signatures, adds
+    one and writes it back: two processes that compile at once may give one name to two of them,
+    and a third one would then run the code of the wrong one.
+    """
+    cache: Any = getattr(compiled, "_cache", None)
+    save = getattr(cache, "save_overload", None)
+    if save is None:  # NUMBA_DISABLE_JIT
+        return
+
+    def save_overload(signature: Any, data: Any) -> None:
+        with _locked() as folder:
+            save(signature, data)
+            for leftover in folder.rglob("*.tmp.*"):  # of a process killed while it saved
+                leftover.unlink(missing_ok=True)
+
+    cache.save_overload = save_overload
+
+
+@contextlib.contextmanager
+def _locked() -> Iterator[Path]:
+    folder = cache_folder()
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(folder / ".lock", "a") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield folder

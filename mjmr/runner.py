@@ -6,11 +6,10 @@ What a run leaves in its folder: ``results.sqlite`` (every trial), ``claims.json
 
 import contextlib
 import dataclasses
+import functools
 import os
 import shlex
-import shutil
 import signal
-import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -22,7 +21,7 @@ from mjmr.claims import Verdict, judge_all
 from mjmr.conditions import parse_filter
 from mjmr.errors import GL_ADVICE, InvalidInputError, MissingGLError, MjmrError
 from mjmr.failures import failure_path, keep_replay
-from mjmr.files import write_atomically
+from mjmr.files import temporary_folder, write_atomically
 from mjmr.film_options import FilmOptions
 from mjmr.parts import Job, PartChoice
 from mjmr.progress import Progress, doing, say, standard_output
@@ -50,6 +49,7 @@ class RunOptions:
         size: ``quick``, ``standard`` or ``full``.
         seeds: Seeds of every condition; None takes what the size declares.
         workers: Processes; None takes one for each CPU this process may use.
+        cluster: Address ``tcp://host:port`` of a Dask scheduler whose workers compute the trials.
         only: Conditions as texts ``key=value[,value...]``.
         parts: What takes a role in place of the study's own.
         out: Results folder; None takes that of :func:`default_folder`.
@@ -68,6 +68,7 @@ class RunOptions:
     size: str = "quick"
     seeds: int | None = None
     workers: int | None = None
+    cluster: str | None = None
     only: tuple[str, ...] = ()
     parts: tuple[PartChoice, ...] = ()
     out: Path | None = None
@@ -81,6 +82,15 @@ class RunOptions:
         for name, value in (("seeds", self.seeds), ("workers", self.workers)):
             if value is not None and value < 1:
                 raise InvalidInputError(f"{name} must be at least 1, not {value}")
+        if self.cluster is not None:
+            from mjmr.cluster import check_address
+
+            if self.workers is not None:
+                raise InvalidInputError(
+                    "--cluster and --workers exclude each other: a cluster's workers are started "
+                    "beside its scheduler"
+                )
+            check_address(self.cluster)
         if self.check and self.accept:
             raise InvalidInputError("--check and --accept exclude each other")
         for flag, given in (("--check", self.check), ("--accept", self.accept)):
@@ -233,17 +243,12 @@ class _Run:
             return True
         if self.done:
             say(self.messages, f"resuming: {self.done} of {len(self.trials)} trials are kept")
-        self._prepare()
-        if executor is None:
-            from mjmr.executor import LocalExecutor
-
-            self.workers = min(self.options.workers or cpu_count(), len(pending))
-            executor = LocalExecutor(self.workers)
+        executor = executor or self._executor(len(pending))
         job = Job(self.options.study, self.study.chosen)
         with (
             _interrupts() as stopped,
-            Progress(self.messages, self.done, len(self.trials)) as progress,
             contextlib.closing(executor.run(job, pending, stopped)) as outcomes,
+            Progress(self.messages, self.done, len(self.trials)) as progress,
         ):
             for outcome in outcomes:
                 keep_replay(self.folder, outcome)
@@ -252,6 +257,20 @@ class _Run:
                 self.computed += 1
                 progress.advance(outcome.status == "ok")
         return self.done == len(self.trials)
+
+    def _executor(self, trials: int) -> "Executor":
+        if self.options.cluster is not None:
+            from mjmr.cluster import DaskExecutor
+
+            self.study.resolve("trial")  # its workers compile for themselves
+            size, digest = self.options.size, self.study.digest(self.options.size)
+            tell = functools.partial(say, self.messages)
+            return DaskExecutor(self.options.cluster, size, digest, tell)
+        from mjmr.executor import LocalExecutor
+
+        self._prepare()
+        self.workers = min(self.options.workers or cpu_count(), trials)
+        return LocalExecutor(self.workers)
 
     def _prepare(self) -> None:
         self.study.resolve("trial")  # a study that cannot be imported is told once, here
@@ -276,17 +295,15 @@ class _Run:
         plots = self.study.plots
         if plots is None or not asked.finished:
             return []
-        folder = Path(tempfile.mkdtemp(prefix=".plots-", dir=self.folder))
         try:
-            written = call_study("plots", self.study.resolve("plots"), asked.fresh(), folder)
-            for path in sorted(p for p in map(Path, written or ()) if p.is_file()):
-                os.replace(path, self.folder / path.name)
+            with temporary_folder(self.folder, "plots") as folder:
+                written = call_study("plots", self.study.resolve("plots"), asked.fresh(), folder)
+                for path in sorted(p for p in map(Path, written or ()) if p.is_file()):
+                    os.replace(path, self.folder / path.name)
         except NoTrialsError as e:  # with --only a plot may lack what it shows
             say(self.messages, f"plots skipped: {e}")
         except MjmrError as e:
             return [str(e)]
-        finally:
-            shutil.rmtree(folder, ignore_errors=True)
         return []
 
     def film(self) -> list[str]:
@@ -313,6 +330,7 @@ class _Run:
             "seeds": o.seeds,
             "only": list(o.only),
             "workers": self.workers,
+            "cluster": o.cluster,
             "film": o.film,
             "trials": len(table),
             "finished": table.finished,
@@ -346,6 +364,7 @@ class _Run:
         words = ["mjmr", "run", o.study, "--size", o.size]
         words += ["--seeds", str(o.seeds)] if o.seeds is not None else []
         words += ["--workers", str(o.workers)] if o.workers is not None else []
+        words += ["--cluster", o.cluster] if o.cluster is not None else []
         words += ["--only", *o.only] if o.only else []
         words += ["--with", *map(str, o.parts)] if o.parts else []
         words += ["--out", str(o.out)] if o.out is not None else []

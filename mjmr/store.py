@@ -5,14 +5,14 @@ transaction, a killed driver leaves at most a journal that the next opening roll
 results are one file that can be copied at any time. WAL would commit faster than trials finish,
 at the price of two more files and shared memory, which network folders do not have.
 
-Metrics are JSON whose floats round-trip bit for bit; nan and infinities are written as
-``{"float": "nan"}``, since JSON has no word for them.
+Every trial has a checksum, looked at whenever it is read. Metrics are JSON whose floats round-trip
+bit for bit; nan and infinities are written as ``{"float": "nan"}``, since JSON has no word for
+them.
 """
 
 import contextlib
-import csv
 import fcntl
-import io
+import hashlib
 import json
 import math
 import os
@@ -27,10 +27,10 @@ from typing import Any, Self
 
 from mjmr.conditions import Condition
 from mjmr.errors import MjmrError
-from mjmr.files import write_atomically
+from mjmr.files import clear_leftovers
 from mjmr.table import Metric
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 FILE = "results.sqlite"
 _LOCK = ".lock"
 _STATUSES = ("ok", "failed", "no-gl")
@@ -44,6 +44,7 @@ CREATE TABLE trials (
     metrics TEXT NOT NULL,
     error TEXT NOT NULL,
     traceback TEXT NOT NULL,
+    checksum TEXT NOT NULL,
     UNIQUE (condition, seed)
 );
 CREATE TABLE wall_times (
@@ -114,6 +115,7 @@ class Store:
             except OSError as e:
                 raise StoreError(f"another mjmr is running in {self.folder}") from e
             self._check_digest(meta)  # again: another driver may have come between
+            clear_leftovers(self.folder)
             self._db = self._open(meta)
         except BaseException:
             self._lock.close()
@@ -173,14 +175,17 @@ class Store:
         """
         key, metrics = outcome.condition.key, encode(outcome.metrics)
         row = (key, outcome.seed, outcome.status, metrics, outcome.error, outcome.traceback)
+        row += (_checksum(*row),)
         try:
             self._db.execute("BEGIN IMMEDIATE")
             try:
                 written = self._db.execute(
-                    "INSERT INTO trials (condition, seed, status, metrics, error, traceback) "
-                    "VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (condition, seed) DO UPDATE SET "
+                    "INSERT INTO trials (condition, seed, status, metrics, error, "
+                    "traceback, checksum) VALUES (?, ?, ?, ?, ?, ?, ?) "
+                    "ON CONFLICT (condition, seed) DO UPDATE SET "
                     "status = excluded.status, metrics = excluded.metrics, "
-                    "error = excluded.error, traceback = excluded.traceback "
+                    "error = excluded.error, traceback = excluded.traceback, "
+                    "checksum = excluded.checksum "
                     "WHERE trials.status != 'ok'",
                     row,
                 ).rowcount
@@ -292,10 +297,16 @@ def _outcomes(db: sqlite3.Connection) -> Iterator[Outcome]:
     ):
         # SQLite keeps no nan: it comes back as NULL.
         wall.setdefault((key, seed), {})[name] = math.nan if value is None else value
-    for key, seed, status, metrics, error, trace in db.execute(
-        "SELECT condition, seed, status, metrics, error, traceback FROM trials "
+    for *row, checksum in db.execute(
+        "SELECT condition, seed, status, metrics, error, traceback, checksum FROM trials "
         "ORDER BY condition, seed"
     ):
+        key, seed, status, metrics, error, trace = row
+        if _checksum(*row) != checksum:
+            raise StoreError(
+                f"{FILE} is damaged: trial {key} seed {seed} is not what was written (its checksum "
+                "differs); move it elsewhere, or use --fresh to set its folder aside and start anew"
+            )
         yield Outcome(
             Condition(_parse(key)),
             seed,
@@ -305,6 +316,11 @@ def _outcomes(db: sqlite3.Connection) -> Iterator[Outcome]:
             error,
             trace,
         )
+
+
+def _checksum(*row: Any) -> str:
+    """SHA-256 of a trial as its row has it, so that no changed digit passes for a result."""
+    return hashlib.sha256(json.dumps(row).encode()).hexdigest()
 
 
 def is_of(folder: Path, digest: str) -> bool:
@@ -345,33 +361,6 @@ def set_aside(folder: Path) -> Path | None:
     except OSError as e:
         raise StoreError(f"cannot set {folder} aside: {e.strerror}") from e
     return aside
-
-
-def export_csv(folder: Path, path: Path) -> int:
-    """Write the trials of a results folder as CSV: one line each, conditions and metrics first.
-
-    Returns:
-        Number of trials.
-
-    Raises:
-        StoreError: As for :func:`reading`, or the CSV file cannot be written.
-    """
-    found = read_outcomes(folder)
-    conditions = list(dict.fromkeys(n for o in found for n in o.condition))
-    metrics = list(dict.fromkeys(n for o in found for n in o.metrics))
-    wall = list(dict.fromkeys(n for o in found for n in o.wall))
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([*conditions, "seed", "status", *metrics, *wall, "error"])
-    for o in found:
-        cells = [o.condition[n] for n in conditions] + [o.seed, o.status]
-        cells += [o.metrics.get(n) for n in metrics] + [o.wall.get(n) for n in wall]
-        writer.writerow([*cells, o.error])
-    try:
-        write_atomically(path, text.getvalue())
-    except OSError as e:
-        raise StoreError(f"cannot write {path}: {e.strerror}") from e
-    return len(found)
 
 
 def encode(metrics: Mapping[str, Metric]) -> str:

@@ -1,14 +1,13 @@
 """Calling what a study declares, so that whatever it raises becomes one sentence."""
 
 import os
-import shutil
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from mjmr.claims import one_line
 from mjmr.errors import MissingGLError, MjmrError
+from mjmr.files import temporary_folder
 from mjmr.film_options import FilmOptions
 from mjmr.study import Study
 from mjmr.table import NoTrialsError
@@ -25,16 +24,13 @@ def make_film(study: Study, path: Path, options: FilmOptions) -> None:
     if function is None:
         raise MjmrError(f"study {study.name} has no film")
     try:
-        folder = Path(tempfile.mkdtemp(prefix=".film-", dir=path.parent))
+        with temporary_folder(path.parent, "film") as folder:
+            call_study("film", function, study, folder / path.name, options)
+            if not (folder / path.name).is_file():
+                raise MjmrError(f"film of {study.name}: nothing was written")
+            os.replace(folder / path.name, path)
     except OSError as e:
         raise MjmrError(f"cannot write to {path.parent}: {e.strerror}") from e
-    try:
-        call_study("film", function, study, folder / path.name, options)
-        if not (folder / path.name).is_file():
-            raise MjmrError(f"film of {study.name}: nothing was written")
-        os.replace(folder / path.name, path)
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 def debugging() -> bool:

@@ -17,7 +17,7 @@ COMMANDS = {
     "film": "make a study's film",
     "mjcf": "write the MuJoCo model of one of a study's conditions",
     "bench": "measure speed",
-    "export": "write results as CSV",
+    "export": "write results as CSV or Parquet",
 }
 _HELP = """\
 mjmr - MuJoCo multi-robot testbed

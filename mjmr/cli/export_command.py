@@ -12,7 +12,7 @@ from mjmr.cli.parsing import SizeName, StudyName, option, parse
 _MORE = """
 EXAMPLES
   mjmr export safe-navigation trials.csv
-  mjmr export safe-navigation --size standard trials.csv
+  mjmr export safe-navigation --size standard trials.parquet
 
 EXIT CODES
   0  the file was written
@@ -22,14 +22,18 @@ EXIT CODES
 
 @dataclass(frozen=True)
 class Export:
-    """Write a study's results as CSV, also while a run is under way.
+    """Write a study's results as CSV or Parquet, also while a run is under way.
 
-    One line a trial: condition, seed, status, metrics, wall times (names that start with wall_),
-    error. Numbers are written so that they read back bit for bit.
+    One row a trial: condition, seed, status, metrics, wall times (names that start with wall_),
+    error. Numbers read back bit for bit; in Parquet columns have types, and what a trial lacks is
+    null. The file's ending chooses; Parquet needs pip install "mjmr[parquet]".
     """
 
     study: StudyName
-    file: Annotated[Positional[Path], option("FILE.csv", "File to write; replaced if it exists.")]
+    file: Annotated[
+        Positional[Path],
+        option("FILE", "File to write, .csv or .parquet; replaced if it exists."),
+    ]
     size: SizeName = "quick"
     out: Annotated[Path | None, option("DIR", "Results folder.", "renders/STUDY/SIZE")] = None
 
@@ -37,12 +41,12 @@ class Export:
 def main(arguments: Sequence[str]) -> int:
     """Export results."""
     a = parse(Export, "export", arguments, _MORE)
+    from mjmr.export import export
     from mjmr.registry import load_study
     from mjmr.runner import default_folder
-    from mjmr.store import export_csv
 
     study = load_study(a.study)
     study.size(a.size)
-    count = export_csv(a.out or default_folder(study, a.size), a.file)
+    count = export(a.out or default_folder(study, a.size), a.file)
     print(f"{count} trials written to {a.file}")
     return 0

@@ -46,12 +46,18 @@ def main(arguments: Sequence[str]) -> int:
     from mjmr.progress import doing
     from mjmr.registry import load_study
     from mjmr.runner import default_folder
+    from mjmr.store import is_of
     from mjmr.study_calls import call_study, make_film
 
     study = load_study(a.study)
     study.size(a.size)
     options = FilmOptions(camera=a.camera, look=a.look)
     path = a.out or default_folder(study, a.size) / "film.mp4"
+    if a.out is None and not is_of(path.parent, study.digest(a.size)):
+        raise MjmrError(
+            f"{path.parent} holds results of another configuration or source, or damaged ones; a "
+            "film of this one goes elsewhere with --out FILE"
+        )
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as e:

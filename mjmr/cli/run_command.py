@@ -20,6 +20,7 @@ EXAMPLES
   mjmr run safe-navigation
   mjmr run safe-navigation --size standard --workers 8
   mjmr run safe-navigation --only scene=A sigma_mm=0,4 --seeds 10 --out renders/try
+  mjmr run safe-navigation --size full --cluster tcp://10.0.0.1:8786
   mjmr run safe-navigation --size standard --check
   mjmr run safe-navigation --with navigator=dash.py:Dash
 
@@ -66,6 +67,10 @@ class Run:
     workers: Annotated[
         str | None, option("W", "Processes, W >= 1; one thread each.", "one a CPU")
     ] = None
+    cluster: Annotated[
+        str | None,
+        option("tcp://HOST:PORT", "Dask scheduler whose workers compute the trials.", "this host"),
+    ] = None
     only: Annotated[
         tuple[str, ...],
         option("KEY=VALUE[,VALUE...]", "Run conditions with these values only.", "all"),
@@ -95,6 +100,7 @@ def main(arguments: Sequence[str]) -> int:
         size=a.size,
         seeds=seeds,
         workers=workers,
+        cluster=a.cluster,
         only=a.only,
         parts=parts,
         out=a.out,

@@ -73,6 +73,9 @@ BAD = {
     "bench tyo": "unknown study 'tyo'",
     "export toy a.csv": "no results in renders/toy/quick; make them with mjmr run",
     "export toy a.csv --size hug": "unknown size 'hug'",
+    "export toy a.xlsx": "a file to export to ends in .csv or .parquet, not a.xlsx",
+    "run toy --cluster host:8786": "a cluster's address is tcp://host:port",
+    "run toy --cluster tcp://h:1 --workers 2": "--cluster and --workers exclude each other",
     "list all": "unrecognized options: all",
 }
 
@@ -172,6 +175,17 @@ def test_from_run_to_export(capsys, tmp_path):
         rows = list(csv.DictReader(file))
     assert [r["seed"] for r in rows] == ["0", "1", "2", "3"]
     assert {r["status"] for r in rows} == {"ok"}
+
+
+def test_a_film_does_not_go_beside_results_of_other_code(capsys, tmp_path, monkeypatch):
+    assert main(["run", "toy", "--workers", "1", "--no-film", "--only", "bias=0.9"]) == 0
+    monkeypatch.setattr("mjmr.provenance.versions", lambda: {"mjmr": "0"})
+    capsys.readouterr()
+    assert main(["film", "toy"]) == 2
+    assert "renders/toy/quick holds results of another" in capsys.readouterr().err
+    assert not (tmp_path / "renders/toy/quick/film.mp4").exists()
+    assert main(["film", "toy", "--out", "other.mp4"]) == 0
+    assert (tmp_path / "other.mp4").exists()
 
 
 def test_mjcf_film_bench_version(capsys, tmp_path, monkeypatch):

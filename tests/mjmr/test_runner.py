@@ -18,6 +18,7 @@ from mjmr.errors import GL_ADVICE, InvalidInputError, MjmrError
 from mjmr.progress import Progress
 from mjmr.runner import RunOptions, run_study
 from mjmr.store import StoreError
+from tests import kill_runs
 from tests.processes import spawned
 
 TOY = "tests.toy_study:study"
@@ -406,3 +407,17 @@ def wait_for(condition, seconds=20.0):
     while not condition():
         assert time.monotonic() < end, "waited in vain"
         time.sleep(0.01)
+
+
+@pytest.mark.parametrize("phase", ["result", "commit"])
+def test_killed_around_a_commit_it_ends_as_if_left_alone(tmp_path, phase):
+    """The short version of ``python -m tests.kill_runs``."""
+    folder, told = kill_runs.series(
+        tmp_path, phase, 3, TOY, ("--workers", "2", "--seeds", "6", "--no-film")
+    )
+    assert told["kills"] == 3
+    assert told["runs"] >= 4
+    whole = tmp_path / "whole"
+    run(whole, seeds=6, film=False)
+    assert kill_runs.contents(folder) == kill_runs.contents(whole)
+    assert (folder / "heads.svg").read_bytes() == (whole / "heads.svg").read_bytes()

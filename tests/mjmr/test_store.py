@@ -14,13 +14,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mjmr.conditions import Condition
+from mjmr.export import export
 from mjmr.store import (
     Outcome,
     Store,
     StoreError,
     decode,
     encode,
-    export_csv,
     read_meta,
     read_outcomes,
     set_aside,
@@ -166,6 +166,29 @@ def test_damaged_metrics_are_named(tmp_path):
         read_outcomes(tmp_path / "r")
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        "metrics = replace(metrics, '0.1', '0.2')",
+        "seed = 7",
+        "status = 'failed'",
+        "condition = replace(condition, '1.0', '2.0')",
+        "checksum = 'none'",
+    ],
+)
+def test_a_changed_trial_is_noticed_and_named(tmp_path, change):
+    with Store(tmp_path / "r", META) as store:
+        store.record(ok(A, 0, v=0.1))
+        store.record(Outcome(A, 1, "failed", error="E: x"))
+        store.record(ok(A, 1, v=0.3))
+    assert len(read_outcomes(tmp_path / "r")) == 2
+    _sql(tmp_path / "r" / "results.sqlite", f"UPDATE trials SET {change} WHERE seed = 0")
+    with pytest.raises(StoreError, match=r"damaged: trial .*x.* seed [07] is not what was written"):
+        read_outcomes(tmp_path / "r")
+    with Store(tmp_path / "r", META) as store, pytest.raises(StoreError, match="checksum"):
+        store.outcomes()
+
+
 def _sql(path, statement):
     db = sqlite3.connect(path)
     db.execute(statement)
@@ -224,7 +247,7 @@ def test_csv_has_every_trial_and_exact_numbers(tmp_path):
         store.record(ok(A, 0, v=0.1 + 0.2, s='with "quotes", and commas'))
         store.record(Outcome(B, 3, "failed", error="E: no"))
     path = tmp_path / "out.csv"
-    assert export_csv(tmp_path, path) == 2
+    assert export(tmp_path, path) == 2
     first, second = csv.DictReader(path.open(newline=""))
     assert float(first["v"]) == 0.1 + 0.2
     assert first["s"] == 'with "quotes", and commas'
@@ -236,9 +259,9 @@ def test_csv_has_every_trial_and_exact_numbers(tmp_path):
     )
     assert first["wall_trial"] == "0.5"
     with pytest.raises(StoreError, match="no results"):
-        export_csv(tmp_path / "nowhere", path)
+        export(tmp_path / "nowhere", path)
     with pytest.raises(StoreError, match="cannot write"):
-        export_csv(tmp_path, tmp_path / "nowhere" / "out.csv")
+        export(tmp_path, tmp_path / "nowhere" / "out.csv")
 
 
 _WRITER = """
