@@ -62,6 +62,7 @@ def run_shell(text, folder):
         ["bash", "-euo", "pipefail", "-c", text],
         folder,
         PATH=f"{Path(sys.executable).parent}:{os.environ['PATH']}",
+        COLUMNS="120",  # wherever the tests run, the width the page was written at
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
