@@ -21,8 +21,9 @@ from concurrent.futures import CancelledError
 from dataclasses import dataclass, field
 from typing import Any
 
+from mjmr.cluster_worker import reason, wrong_threads
 from mjmr.errors import InvalidInputError, MjmrError
-from mjmr.executor import Executor, compute
+from mjmr.executor import Executor
 from mjmr.parts import Job
 from mjmr.provenance import versions
 from mjmr.store import Outcome
@@ -37,7 +38,7 @@ _VERSION = (
     "next((d.version for d in __import__('importlib.metadata', fromlist=['distributions'])"
     ".distributions(name='mjmr')), None)"
 )
-_ANSWER = "__import__('mjmr.cluster', fromlist=['answer']).answer(*request)"
+_ANSWER = "__import__('mjmr.cluster_worker', fromlist=['answer']).answer(*request)"
 
 
 def check_address(address: str) -> None:
@@ -98,61 +99,6 @@ class DaskExecutor(Executor):
                 yield from crew.work(trials, stop)
 
         return outcomes()
-
-
-def answer(
-    found: Mapping[str, str], size: str, digest: str, job: bytes, trial: bytes | None
-) -> tuple[str, Any]:
-    """What a worker does when asked: check that it is fit and, given a trial, compute it.
-
-    Args:
-        found: Versions the driver has.
-        size: The study's size.
-        digest: What the study's digest must be.
-        job: Pickled :class:`mjmr.parts.Job`.
-        trial: Pickled condition and seed; None only checks.
-
-    Returns:
-        ``("unfit", why)``, ``("fit", None)`` or ``("outcome", pickled outcome)``.
-    """
-    try:
-        why = _unfit(found, size, digest, job)
-    except Exception as e:
-        why = f"cannot load the study ({_reason(e)})"
-    if why:
-        return "unfit", why
-    if trial is None:
-        return "fit", None
-    return "outcome", pickle.dumps(compute(pickle.loads(job), *pickle.loads(trial)))
-
-
-def _unfit(found: Mapping[str, str], size: str, digest: str, job: bytes) -> str:
-    from distributed import get_worker
-
-    from mjmr.registry import load_study
-
-    with contextlib.suppress(ValueError, AttributeError):  # asked outside a task
-        threads = get_worker().state.nthreads
-        if threads != 1:
-            return _threads(threads)
-    mine = versions()
-    others = [
-        f"{n} {mine.get(n)} where {v} is wanted" for n, v in found.items() if v != mine.get(n)
-    ]
-    if others:
-        return f"has {', '.join(others)}"
-    wanted = pickle.loads(job)
-    theirs = load_study(wanted.study).choose(wanted.parts).digest(size)
-    if theirs != digest:
-        return (
-            "has the same versions but another source of mjmr or of the study "
-            f"(digest {theirs[:12]} where {digest[:12]} is wanted); install the same and restart it"
-        )
-    return ""
-
-
-def _threads(count: int) -> str:
-    return f"has {count} threads where trials need one each: start workers with --nthreads 1"
 
 
 @dataclass
@@ -271,7 +217,7 @@ class _Crew:
         except (OSError, CancelledError):
             raise  # the scheduler is lost
         except Exception as e:
-            kind, told = "unfit", f"cannot compute ({_reason(e)})"
+            kind, told = "unfit", f"cannot compute ({reason(e)})"
         worker.tasks.remove(task)
         if kind == "outcome":
             return pickle.loads(told)
@@ -316,7 +262,7 @@ class _Crew:
 
     def _check(self, threads: Mapping[str, int]) -> dict[str, str]:
         """Why workers are unfit, by address; those that left meanwhile are fit, and noticed."""
-        unfit = {a: _threads(n) for a, n in threads.items() if n != 1}
+        unfit = {a: wrong_threads(n) for a, n in threads.items() if n != 1}
         mine = versions()["mjmr"]
         for address, found in self._ask(_VERSION, {}, threads.keys() - unfit.keys()).items():
             if isinstance(found, Exception):
@@ -358,11 +304,7 @@ def _lacking(e: Exception) -> str:
         return ""
     if isinstance(e, ImportError) and (e.name or "mjmr").partition(".")[0] == "mjmr":
         return "has no mjmr; install the driver's version there"
-    return f"cannot be used ({_reason(e)})"
-
-
-def _reason(e: BaseException) -> str:
-    return " ".join(f"{type(e).__name__}: {e}".split())
+    return f"cannot be used ({reason(e)})"
 
 
 @contextlib.contextmanager
@@ -375,7 +317,7 @@ def _connected(address: str) -> Iterator[Any]:
         CONNECT_SECONDS, lambda: Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
     )
     if client is None or isinstance(client, Exception):
-        why = f" ({_reason(client)})" if client and not isinstance(client, OSError) else ""
+        why = f" ({reason(client)})" if client and not isinstance(client, OSError) else ""
         raise MjmrError(
             f"no answer from a Dask scheduler at {address} within {CONNECT_SECONDS:g} s{why}; "
             "start one with: dask scheduler"
@@ -410,6 +352,6 @@ def _losing(address: str) -> Iterator[None]:
         yield
     except (OSError, CancelledError) as e:
         raise MjmrError(
-            f"lost the scheduler at {address} ({_reason(e)}); what is finished is kept, and the "
+            f"lost the scheduler at {address} ({reason(e)}); what is finished is kept, and the "
             "same command goes on from there"
         ) from e

@@ -390,10 +390,11 @@ def _least_deep(i, position, velocity, desired, dynamics, search):
     """Index of the candidate of least depth; of equal ones, that nearest to the desired command.
 
     In contact, standing still ties with every way out and is nearest to a desired command that
-    leads further in. Unless the desired command leads out, or further out than
-    braking, the equal one that ends least deep is therefore taken. Ours, not the paper's: without
-    it overlapped robots whose goals cross stay overlapped, and one in the way of a box that moves
-    stays there.
+    leads further in. Unless the desired command leads out, or further out than braking, the equal
+    one that ends least deep is therefore taken. Where boxes move it is taken before there is
+    contact, too, and unless the desired command leads out altogether: a box does not wait. Ours,
+    not the paper's: without it overlapped robots whose goals cross stay overlapped, and one in the
+    way of a box that moves stays there.
     """
     candidates = search.candidates
     least = math.inf
@@ -401,6 +402,7 @@ def _least_deep(i, position, velocity, desired, dynamics, search):
         least = min(least, candidates[k, 2])
     now = _overlap_at(i, search.braking[i], 0, search)
     stopped = _overlap_at(i, search.braking[i], PIECES - 1, search)
+    still = not search.drift.any()
     rows = search.chosen[position.shape[0]]
     pick = 0
     pick_end = math.inf
@@ -412,7 +414,7 @@ def _least_deep(i, position, velocity, desired, dynamics, search):
         cy = candidates[k, 1]
         d2 = (cx - desired[i, 0]) ** 2 + (cy - desired[i, 1]) ** 2
         end = 0.0
-        if now > 0.0:
+        if now > 0.0 or not still:
             fill_prediction(
                 position[i, 0],
                 position[i, 1],
@@ -425,7 +427,7 @@ def _least_deep(i, position, velocity, desired, dynamics, search):
                 rows,
             )
             end = _overlap_at(i, rows, PIECES - 1, search)
-            if k == 0 and (end == 0.0 or end < stopped - EQUAL_DEPTH):
+            if k == 0 and (end == 0.0 or (still and end < stopped - EQUAL_DEPTH)):
                 return 0
         if end < pick_end or (end == pick_end and d2 < pick2):
             pick = k

@@ -1,4 +1,4 @@
-"""The paper's Figures 8 and 9, and the price of safety, as plots."""
+"""The paper's Figures 8 and 9, and what latency does, as plots."""
 
 from pathlib import Path
 
@@ -24,6 +24,10 @@ def plots(table: Table, folder: Path) -> list[Path]:
     margins = base.where(scene="cross4", search=True)
     if len(margins.distinct("margin_mm")) > 1:
         written.append(_figure_9(margins, folder))
+    bodies = table.where(mode="physical", scene="cross4", search=True, drive="planar",
+                         sensing="report", sigma_mm=0.0, margin_mm=1.0)  # fmt: skip
+    if len(bodies.distinct("latency")) > 1:
+        written.append(_latency(bodies, folder))
     return written
 
 
@@ -60,3 +64,22 @@ def _figure_9(rows: Table, folder: Path) -> Path:
         axes.set_ylim(bottom=0)
         axes.legend()
     return folder / "figure9-cross4.svg"
+
+
+def _latency(rows: Table, folder: Path) -> Path:
+    title = f"Command latency, scene cross4, margin 1 mm (physical mode, {rows.finished} runs)"
+    path = folder / "latency-cross4.svg"
+    with figure(path, title, "latency [cycles of 1/60 s]", "robot contact [s] in a run") as axes:
+        for predict, label in ((False, "ignored"), (True, "predicted forward")):
+            # without latency there is nothing to predict
+            found = {}
+            for cycles, at in rows.split("latency"):
+                runs = at.where(predict=predict if cycles else True)
+                if runs.finished:
+                    found[cycles] = statistics.mean(runs.values("contact_s"))
+            order = sorted(found)
+            interval_line(axes, order, [found[c] for c in order], label)
+            axes.set_xticks(order)
+        axes.set_ylim(bottom=-0.005)
+        axes.legend()
+    return path

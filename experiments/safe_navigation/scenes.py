@@ -50,10 +50,11 @@ def scene(name: str) -> Scene:
     if name == "straight":
         return Scene(starts=_at(-REACH, [0.0]), far=_at(REACH, [0.0]), near=_at(-REACH, [0.0]))
     if name == "carts":
-        # two that close and open the way in turn, and one that goes along it
+        # two that close and open the way in turn, and one that goes along it; a robot fits between
+        # any two of them, and between each and the walls, wherever they are
         carts = (
-            (-0.7, 0.9, np.pi / 2, 0.5, 0.3, 1.2, 0.3),
-            (0.7, -0.9, np.pi / 2, 0.5, 0.3, 1.2, 0.3),
+            (-0.7, 1.15, np.pi / 2, 0.5, 0.3, 1.0, 0.3),
+            (0.7, -1.15, np.pi / 2, 0.5, 0.3, 1.0, 0.3),
             (0.0, 0.0, 0.0, 0.4, 0.3, 1.6, 0.3),
         )
         lanes = np.array(_LANES)

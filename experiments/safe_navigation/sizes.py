@@ -81,7 +81,7 @@ def _whole(seeds: int, zero_seeds: int, physical_seeds: int) -> tuple[Grid, ...]
             mode="physical",
             scene="cross4",
             margin_mm=1.0,
-            latency=(1, 2),
+            latency=(1, 2, 3),
             predict=(True, False),
             seeds=physical_seeds,
         ),
