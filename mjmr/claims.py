@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from mjmr.conditions import Value, format_value
-from mjmr.errors import InvalidInputError, UnknownNameError
+from mjmr.errors import InvalidInputError, UnknownNameError, one_line
 from mjmr.table import NoTrialsError, Row, Table
 
 __all__ = ["Bound", "Claim", "Evidence", "Row", "Table", "Verdict", "judge", "judge_all"]
@@ -222,11 +222,6 @@ def judge(claim: Claim, table: Table, size: str) -> Verdict:
         return Verdict(verdict=NOT_TESTABLE, why=why, **common)
     verdict = claim.bound.judge(*(interval or (measured, measured)))
     return Verdict(verdict=verdict, why=evidence.why, **common)
-
-
-def one_line(error: BaseException) -> str:
-    """Type and message of an error on one line."""
-    return " ".join(f"{type(error).__name__}: {error}".split())
 
 
 def _unusable(evidence: Evidence) -> str:

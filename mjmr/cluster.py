@@ -21,8 +21,8 @@ from concurrent.futures import CancelledError
 from dataclasses import dataclass, field
 from typing import Any
 
-from mjmr.cluster_worker import reason, wrong_threads
-from mjmr.errors import InvalidInputError, MjmrError
+from mjmr.cluster_worker import wrong_threads
+from mjmr.errors import InvalidInputError, MjmrError, one_line
 from mjmr.executor import Executor
 from mjmr.parts import Job
 from mjmr.provenance import versions
@@ -217,7 +217,7 @@ class _Crew:
         except (OSError, CancelledError):
             raise  # the scheduler is lost
         except Exception as e:
-            kind, told = "unfit", f"cannot compute ({reason(e)})"
+            kind, told = "unfit", f"cannot compute ({one_line(e)})"
         worker.tasks.remove(task)
         if kind == "outcome":
             return pickle.loads(told)
@@ -304,7 +304,7 @@ def _lacking(e: Exception) -> str:
         return ""
     if isinstance(e, ImportError) and (e.name or "mjmr").partition(".")[0] == "mjmr":
         return "has no mjmr; install the driver's version there"
-    return f"cannot be used ({reason(e)})"
+    return f"cannot be used ({one_line(e)})"
 
 
 @contextlib.contextmanager
@@ -317,7 +317,7 @@ def _connected(address: str) -> Iterator[Any]:
         CONNECT_SECONDS, lambda: Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
     )
     if client is None or isinstance(client, Exception):
-        why = f" ({reason(client)})" if client and not isinstance(client, OSError) else ""
+        why = f" ({one_line(client)})" if client and not isinstance(client, OSError) else ""
         raise MjmrError(
             f"no answer from a Dask scheduler at {address} within {CONNECT_SECONDS:g} s{why}; "
             "start one with: dask scheduler"
@@ -352,6 +352,6 @@ def _losing(address: str) -> Iterator[None]:
         yield
     except (OSError, CancelledError) as e:
         raise MjmrError(
-            f"lost the scheduler at {address} ({reason(e)}); what is finished is kept, and the "
+            f"lost the scheduler at {address} ({one_line(e)}); what is finished is kept, and the "
             "same command goes on from there"
         ) from e

@@ -5,6 +5,7 @@ import pickle
 from collections.abc import Mapping
 from typing import Any
 
+from mjmr.errors import one_line
 from mjmr.executor import compute
 from mjmr.provenance import versions
 
@@ -27,7 +28,7 @@ def answer(
     try:
         why = _unfit(found, size, digest, job)
     except Exception as e:
-        why = f"cannot load the study ({reason(e)})"
+        why = f"cannot load the study ({one_line(e)})"
     if why:
         return "unfit", why
     if trial is None:
@@ -63,8 +64,3 @@ def _unfit(found: Mapping[str, str], size: str, digest: str, job: bytes) -> str:
 def wrong_threads(count: int) -> str:
     """Why a worker with this many threads is unfit."""
     return f"has {count} threads where trials need one each: start workers with --nthreads 1"
-
-
-def reason(e: BaseException) -> str:
-    """Type and message of an error, on one line."""
-    return " ".join(f"{type(e).__name__}: {e}".split())

@@ -63,3 +63,8 @@ def nearest_first(name: str, valid: list[str]) -> list[str]:
     """Order ``valid`` by likeness to ``name``, most alike first, ties as given."""
     low = name.lower()
     return sorted(valid, key=lambda v: -difflib.SequenceMatcher(None, low, v.lower()).ratio())
+
+
+def one_line(error: BaseException) -> str:
+    """Type and message of an error on one line."""
+    return " ".join(f"{type(error).__name__}: {error}".split())

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from mjmr.conditions import Condition
-from mjmr.errors import InvalidInputError, MissingGLError
+from mjmr.errors import InvalidInputError, MissingGLError, one_line
 from mjmr.one_thread import one_thread_each
 from mjmr.parts import Job
 from mjmr.store import Outcome
@@ -272,7 +272,7 @@ def _failed(condition: Condition, seed: int, e: BaseException) -> Outcome:
 
 
 def _one_line(e: BaseException) -> str:
-    return _storable(" ".join(f"{type(e).__name__}: {e}".split()))
+    return _storable(one_line(e))
 
 
 def _storable(text: str) -> str:

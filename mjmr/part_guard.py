@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mjmr.errors import MissingGLError, PartError
+from mjmr.errors import MissingGLError, PartError, one_line
 from mjmr.parts import Method, Part, shape_text
 
 
@@ -143,9 +143,8 @@ class Guard:
         except MissingGLError:
             raise
         except (Exception, SystemExit) as e:  # a part that exits shall not end its worker
-            words = " ".join(f"{type(e).__name__}: {e}".split())
             told = f"{self._told} raised in {what} {when()}".rstrip()
-            raise PartError(f"{told}: {words}") from e
+            raise PartError(f"{told}: {one_line(e)}") from e
 
 
 def _copy(value: Any) -> Any:

@@ -18,7 +18,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from mjmr.errors import InvalidInputError, PartError
+from mjmr.errors import InvalidInputError, PartError, one_line
 from mjmr.parts import PartChoice
 
 _FORM = "ROLE=package.module:Class or ROLE=path/to/file.py:Class"
@@ -56,7 +56,7 @@ def _read(path: str, reference: str) -> str:
     except OSError as e:
         raise PartError(f"cannot read the file of {reference}: {e.strerror}") from e
     except (RuntimeError, SyntaxError, UnicodeError) as e:  # no home, unknown or wrong coding
-        raise PartError(f"cannot read the file of {reference}: {_told(e)}") from e
+        raise PartError(f"cannot read the file of {reference}: {one_line(e)}") from e
 
 
 @functools.cache
@@ -73,7 +73,7 @@ def load(choice: PartChoice) -> Any:
         else:
             module = _build(choice.source, where)
     except (Exception, SystemExit) as e:
-        raise PartError(f"cannot load {choice.reference}: {_told(e)}{_advice(e, choice)}") from e
+        raise PartError(f"cannot load {choice.reference}: {one_line(e)}{_advice(e, choice)}") from e
     if not hasattr(module, name):
         classes = [
             n
@@ -83,10 +83,6 @@ def load(choice: PartChoice) -> Any:
         listed = ", ".join(classes) or "none"
         raise PartError(f"{where} has no {name}; its classes: {listed}")
     return getattr(module, name)
-
-
-def _told(e: BaseException) -> str:
-    return " ".join(f"{type(e).__name__}: {e}".split())
 
 
 def _advice(e: BaseException, choice: PartChoice) -> str:

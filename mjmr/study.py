@@ -24,7 +24,7 @@ from mjmr.conditions import (
     format_value,
     matches,
 )
-from mjmr.errors import InvalidInputError, MjmrError, UnknownNameError
+from mjmr.errors import InvalidInputError, MjmrError, UnknownNameError, one_line
 from mjmr.parts import Part, PartChoice, Parts
 from mjmr.watch import watching
 
@@ -304,8 +304,6 @@ def resolve(reference: Any) -> Any:
     except MjmrError:
         raise
     except Exception as e:
-        from mjmr.claims import one_line
-
         raise MjmrError(f"cannot load {reference}: {one_line(e)}") from e
 
 

@@ -5,8 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from mjmr.claims import one_line
-from mjmr.errors import MissingGLError, MjmrError
+from mjmr.errors import MissingGLError, MjmrError, one_line
 from mjmr.files import temporary_folder
 from mjmr.film_options import FilmOptions
 from mjmr.study import Study
