@@ -69,6 +69,15 @@ def run_shell(text, folder):
 
 
 @pytest.mark.slow
+def test_the_script_on_cameras_prints_what_it_says(tmp_path):
+    (script,) = blocks(ROOT / "docs" / "cameras.md", "python")
+    (tmp_path / "eyes.py").write_text(script)
+    done = run([sys.executable, "eyes.py"], tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines() == ["(4, 120, 160, 3) 0.9", "True"]
+
+
+@pytest.mark.slow
 def test_the_page_on_adding_a_system_runs(tmp_path):
     page = ROOT / "docs" / "add-a-system.md"
     write_files(page, tmp_path)
