@@ -18,7 +18,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from mjmr.errors import InvalidInputError, PartError, one_line
+from mjmr.errors import InvalidInputError, PartError, nearest_first, one_line
 from mjmr.parts import PartChoice
 
 _FORM = "ROLE=package.module:Class or ROLE=path/to/file.py:Class"
@@ -75,12 +75,14 @@ def load(choice: PartChoice) -> Any:
     except (Exception, SystemExit) as e:
         raise PartError(f"cannot load {choice.reference}: {one_line(e)}{_advice(e, choice)}") from e
     if not hasattr(module, name):
+        package = where.partition(".")[0]
         classes = [
             n
             for n, v in vars(module).items()
-            if isinstance(v, type) and v.__module__ == module.__name__
+            # its own, or what a package gathers of its modules
+            if isinstance(v, type) and v.__module__.partition(".")[0] in (module.__name__, package)
         ]
-        listed = ", ".join(classes) or "none"
+        listed = ", ".join(nearest_first(name, classes)) or "none"
         raise PartError(f"{where} has no {name}; its classes: {listed}")
     return getattr(module, name)
 

@@ -135,7 +135,11 @@ def _run(
     from mjmr.watch import watching
 
     job = Job(name, study.chosen)
-    study.resolve("trial")  # a study that cannot be imported is bad input, not a failed trial
+    # a study that cannot be imported, or has no such world, is bad input, not a failed trial
+    study.resolve("trial")
+    build = study.resolve("world")
+    if build is not None:
+        call_study("world", build, condition)
     traces: list[Trace] = []
     with doing(Console(stderr=True), "running the trial ..."):
         call_study("prepare", make_ready, job)  # it may build simulations that are not the trial's

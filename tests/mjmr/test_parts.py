@@ -124,6 +124,7 @@ def test_dotted_references_that_lead_nowhere():
     for reference, told in (
         ("nowhere.at_all:Nav", "set PYTHONPATH"),
         ("tests.toy_parts:Slo", "tests.toy_parts has no Slo; its classes: Slow, Full"),
+        ("controllers.motion:Nav", "has no Nav; its classes: Navigator"),
     ):
         with pytest.raises(PartError) as e:
             study.choose((PartChoice("mover", reference),))

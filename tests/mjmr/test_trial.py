@@ -165,3 +165,8 @@ def test_numeric_libraries_are_loaded_for_one_thread_as_in_a_worker():
     )  # fmt: skip
     lines = done.stdout.splitlines()
     assert (lines[0], lines[-1]) == ("numpy 1", "after None")
+
+
+def test_a_condition_that_has_no_world_is_bad_input(capsys):
+    assert main(["trial", "safe-navigation", "mode=metric", "drive=omni"]) == 2
+    assert "drive=omni needs mode=physical" in capsys.readouterr().err
