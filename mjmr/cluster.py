@@ -101,7 +101,7 @@ class DaskExecutor(Executor):
         return outcomes()
 
 
-@dataclass
+@dataclass(eq=False)
 class _Task:
     trial: Trial
     deaths: int = 0
@@ -172,6 +172,8 @@ class _Crew:
                     wait(futures, timeout=_POLL, return_when="FIRST_COMPLETED")
                 for worker in list(self.workers.values()):
                     for task in [t for t in worker.tasks if t.future.done()]:
+                        if task not in worker.tasks:  # the one before has cost it its worker
+                            continue
                         outcome = self._finish(worker, task)
                         if outcome is not None:
                             yield outcome
@@ -258,6 +260,7 @@ class _Crew:
         self.refused.add(worker.address)
         self.client.cancel([t.future for t in worker.tasks])
         self.again.extend(worker.tasks)
+        worker.tasks.clear()
         self.tell(f"worker {worker.address} {why}; it gets no trials")
 
     def _check(self, threads: Mapping[str, int]) -> dict[str, str]:

@@ -27,6 +27,9 @@ Key = tuple[Condition, int]
 class Difference:
     """One metric of both runs, over pairs of trials.
 
+    Pairs of one seed under several conditions are not independent: they are averaged first, and
+    interval and p rest on the seeds.
+
     Args:
         group: Values of the parameters the comparison is split by.
         metric: Its name.
@@ -36,6 +39,7 @@ class Difference:
         low: Lower end of its 95 % bootstrap interval.
         high: Upper end.
         n: Pairs in which both values are finite numbers.
+        seeds: Seeds among them.
         p: Of Wilcoxon's signed-rank test, two-sided.
         p_holm: The same adjusted by Holm for all the comparisons made here.
     """
@@ -48,6 +52,7 @@ class Difference:
     low: float
     high: float
     n: int
+    seeds: int
     p: float
     p_holm: float = math.nan
 
@@ -200,9 +205,12 @@ def _difference(
 ) -> Difference | None:
     """The row of a metric; None if no pair has it as finite numbers."""
     values = np.array([[_number(o, metric) for o in pair] for pair in pairs])
-    a, b = values[np.isfinite(values).all(axis=1)].T
-    if not a.size:
+    finite = np.isfinite(values).all(axis=1)
+    if not finite.any():
         return None
+    seed_of_pair = np.array([pair[0].seed for pair in pairs])[finite]
+    seeds, of = np.unique(seed_of_pair, return_inverse=True)
+    a, b = (np.bincount(of, column) / np.bincount(of) for column in values[finite].T)
     # Pairs are resampled together, so their differences are.
     estimate = statistics.mean(b - a)
     return Difference(
@@ -213,7 +221,8 @@ def _difference(
         difference=estimate.value,
         low=estimate.low,
         high=estimate.high,
-        n=estimate.n,
+        n=int(finite.sum()),
+        seeds=len(seeds),
         p=statistics.wilcoxon(a, b),
     )
 

@@ -31,6 +31,7 @@ class Parameter:
         values: The values allowed; None allows every value of the kind.
         unit: SI unit, empty if none.
         kind: ``bool``, ``int``, ``float`` or ``str``; None takes the default's.
+        least: Smallest number allowed; None for any.
 
     Raises:
         InvalidInputError: The declaration contradicts itself.
@@ -42,6 +43,7 @@ class Parameter:
     values: tuple[Value, ...] | None = None
     unit: str = ""
     kind: type | None = None
+    least: float | None = None
 
     def __post_init__(self):
         if not self.name.isidentifier() or self.name in _RESERVED:
@@ -70,6 +72,11 @@ class Parameter:
             InvalidInputError: Not of the declared kind, or not finite.
         """
         typed = self._typed(value)
+        if self.least is not None and not isinstance(typed, str) and typed < self.least:
+            unit = f" {self.unit}" if self.unit else ""
+            raise InvalidInputError(
+                f"{self.name} must be at least {self.least:g}{unit}; got {typed:g}{unit}"
+            )
         if self.values is not None and typed not in self.values:
             raise UnknownNameError(
                 f"value of {self.name}", format_value(typed), map(format_value, self.values)

@@ -10,7 +10,7 @@ import fcntl
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 _PREFIX = ".mjmr-tmp-"
@@ -24,10 +24,9 @@ def write_atomically(path: Path, content: str | bytes) -> None:
     """
     path = Path(path)
     clear_leftovers(path.parent)
-    handle, name = tempfile.mkstemp(prefix=f"{_PREFIX}{path.name}-", dir=path.parent)
+    handle, name = _locked(lambda: _file(path))
     try:
         with os.fdopen(handle, "wb") as file:
-            _lock(handle)
             file.write(content.encode() if isinstance(content, str) else content)
             file.flush()
             os.fsync(file.fileno())
@@ -46,14 +45,41 @@ def temporary_folder(parent: Path, name: str) -> Iterator[Path]:
         OSError: ``parent`` cannot be written to.
     """
     clear_leftovers(parent)
-    folder = Path(tempfile.mkdtemp(prefix=f"{_PREFIX}{name}-", dir=parent))
-    handle = os.open(folder, os.O_RDONLY)
+    handle, folder = _locked(lambda: _folder(parent, name))
     try:
-        _lock(handle)
-        yield folder
+        yield Path(folder)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
         os.close(handle)
+
+
+def _file(path: Path) -> tuple[int, str]:
+    return tempfile.mkstemp(prefix=f"{_PREFIX}{path.name}-", dir=path.parent)
+
+
+def _folder(parent: Path, name: str) -> tuple[int, str]:
+    while True:
+        folder = tempfile.mkdtemp(prefix=f"{_PREFIX}{name}-", dir=parent)
+        with contextlib.suppress(FileNotFoundError):  # taken for a leftover already
+            return os.open(folder, os.O_RDONLY), folder
+
+
+def _locked(create: Callable[[], tuple[int, str]]) -> tuple[int, str]:
+    """Handle and name of what ``create`` makes, locked.
+
+    Before it is locked another process may take it for a leftover, and it is made again.
+    """
+    while True:
+        handle, name = create()
+        try:
+            _lock(handle)
+            if os.path.samestat(os.fstat(handle), os.stat(name)):
+                return handle, name
+        except (BlockingIOError, FileNotFoundError):
+            pass
+        os.close(handle)
+        with contextlib.suppress(OSError):
+            Path(name).rmdir() if Path(name).is_dir() else Path(name).unlink()
 
 
 def clear_leftovers(folder: Path) -> None:

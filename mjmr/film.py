@@ -151,8 +151,11 @@ class _Panel:
     """One recording in one rectangle."""
 
     def __init__(self, footage: Footage, label: str, width: int, height: int, options: FilmOptions):
+        n = len(footage.radii)
+        if options.camera == "chase" and not 0 <= options.follow < n:
+            raise InvalidInputError(f"no robot {options.follow} to follow; valid: 0 to {n - 1}")
         self._footage, self._label, self._options = footage, label, options
-        self._model = copy.copy(footage.model)  # the renderer sets sizes and quality in it
+        self._model = copy.copy(footage.model)
         if options.look == "draft":
             _boxes_for_planes(self._model)
         self._data = mujoco.MjData(self._model)
@@ -187,7 +190,7 @@ class _Panel:
         options, tracks = self._options, self._footage.poses
         if options.camera == "overview":
             return self._overview
-        robot = min(options.follow, tracks.shape[1] - 1)
+        robot = options.follow
         x, y, yaw = tracks[index, robot]
         # behind the direction of travel, which holonomic robots choose freely, turning slowly
         back = max(0, index - 10)

@@ -49,6 +49,10 @@ class Footage:
                 f"({k}, {n}, 3); got {self.positions.shape} and {self.poses.shape}"
             )
 
+        for name, told in (("notes", self.notes), ("captions", self.captions)):
+            if len(told) not in (0, k):
+                raise InvalidInputError(f"{name} of {k} instants must be as many; got {len(told)}")
+
     def note(self, index: int) -> dict[str, Array]:
         """What is drawn at instant ``index``."""
         return self.notes[index] if self.notes else {}

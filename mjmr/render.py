@@ -6,6 +6,7 @@ more is set aside and freed, made current first, before the next picture of its 
 """
 
 import atexit
+import copy
 import functools
 import threading
 import weakref
@@ -33,7 +34,7 @@ class Renderer:
         """Open an off-screen context.
 
         Args:
-            model: What to render; its off-screen buffer size and samples are set here.
+            model: What to render; it stays as it is.
             width: [px].
             height: [px].
             look: One of ``LOOKS``.
@@ -44,6 +45,7 @@ class Renderer:
         """
         if look not in LOOKS:
             raise UnknownNameError("look", look, LOOKS)
+        model = copy.copy(model)  # sizes and quality are set in it
         model.vis.global_.offwidth = max(width, 1)
         model.vis.global_.offheight = max(height, 1)
         quality = model.vis.quality

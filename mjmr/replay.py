@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mjmr.errors import MjmrError
+from mjmr.errors import MjmrError, one_line
 from mjmr.film_options import FilmOptions
 from mjmr.footage import Footage
 from mjmr.loop import NOTES
@@ -94,8 +94,8 @@ def load(path: Path) -> Replay:
         MjmrError: The file cannot be read, or is of another version; one sentence says why.
     """
     head, model, arrays = unpack(Path(path))
-    failure = head["kind"] == "failure"
     try:
+        failure = head["kind"] == "failure"
         strange = np.flatnonzero(~np.isfinite(arrays["positions"]).all(axis=1))
         end = int(strange[0]) if len(strange) else len(arrays["positions"])
         if not end:
@@ -115,6 +115,8 @@ def load(path: Path) -> Replay:
         title = f"{head['study']} seed {head['seed']}"
     except KeyError as e:
         raise MjmrError(f"{path} is damaged: it has no {e.args[0]}") from e
+    except (ValueError, TypeError, IndexError) as e:
+        raise MjmrError(f"{path} is damaged: {one_line(e)}") from e
     return Replay(footage, title, FAILURE_SPEED if failure else None, error)
 
 

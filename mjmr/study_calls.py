@@ -5,7 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from mjmr.errors import MissingGLError, MjmrError, one_line
+from mjmr.errors import InvalidInputError, MissingGLError, MjmrError, one_line
 from mjmr.files import temporary_folder
 from mjmr.film_options import FilmOptions
 from mjmr.study import Study
@@ -43,11 +43,12 @@ def call_study(role: str, function: Callable[..., Any], *arguments: Any) -> Any:
     Raises:
         MissingGLError: As the function raised it.
         NoTrialsError: As the function raised it.
+        InvalidInputError: As the function raised it.
         MjmrError: For anything else the function raised, unless ``MJMR_DEBUG=1``.
     """
     try:
         return function(*arguments)
-    except (MissingGLError, NoTrialsError):
+    except (MissingGLError, NoTrialsError, InvalidInputError):
         raise
     except Exception as e:
         if debugging():

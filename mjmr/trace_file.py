@@ -72,10 +72,15 @@ def unpack(path: Path) -> tuple[dict[str, Any], Any, dict[str, np.ndarray]]:
         MjmrError: It is damaged.
     """
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        archive = np.load(path, allow_pickle=False)
+        if not isinstance(archive, np.lib.npyio.NpzFile):
+            raise ValueError("a single array")
+        with archive:
             if "header" not in archive:
                 raise InvalidInputError(f"{path} is not a trace or replay file: it has no header")
             head = json.loads(str(archive["header"]))
+            if not (isinstance(head, dict) and isinstance(head.get("versions", {}), dict)):
+                raise ValueError("a header that is none")
             _check(path, head)
             arrays = {name: archive[name] for name in archive.files if name != "header"}
         model = mujoco.MjModel.from_binary_path("model.mjb", {"model.mjb": _bytes(arrays)})

@@ -41,8 +41,10 @@ study = Study(
             ("A", "cross4", "cross10", "stranger10", "carts", "overlap", "straight", "gallery"),
         ),
         Parameter("search", "whether the velocity-space safety search is on", True),
-        Parameter("sigma_mm", "deviation of reported positions along x and y", 0.0, unit="mm"),
-        Parameter("margin_mm", "added to the radius in the search", 0.0, unit="mm"),
+        Parameter(
+            "sigma_mm", "deviation of reported positions along x and y", 0.0, unit="mm", least=0.0
+        ),
+        Parameter("margin_mm", "added to the radius in the search", 0.0, unit="mm", least=0.0),
         Parameter(
             "failure",
             "stopped: one robot announces after a third of the time that it stops, brakes and "
@@ -93,8 +95,10 @@ study = Study(
             "report",
             ("report", "late-report", "vision"),
         ),
-        Parameter("dt_ms", "largest physics timestep; it divides the cycle", 5.0, unit="ms"),
-        Parameter("duration", "of a run, simulated", 30.0, unit="s"),
+        Parameter(
+            "dt_ms", "largest physics timestep; it divides the cycle", 5.0, unit="ms", least=0.1
+        ),
+        Parameter("duration", "of a run, simulated", 30.0, unit="s", least=0.05),
     ),
     sizes=(QUICK, STANDARD, FULL),
     trial=f"{_HERE}.trial:trial",

@@ -176,7 +176,7 @@ def _omni() -> list[Claim]:
         Claim(
             id="omni-goes-straight",
             text="not in the paper: heading on straight runs within the measured limits",
-            how="the same, asked for 3 and 3 m/s^2; largest change of heading in 10 s, worst run",
+            how="the same, asked for 3 and 3 m/s^2; largest change of heading in a run, worst run",
             bound=Bound("<=", 0.5),
             unit="deg",
             sizes=_ALL,

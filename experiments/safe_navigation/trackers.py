@@ -141,6 +141,12 @@ class CartTracker:
         self.boxes = np.concatenate([self._fixed, [cart.box(0.0) for cart in carts]])
         self.velocity = np.zeros((len(self.boxes), 2))
 
+    def ahead(self, time: float) -> Array:
+        """The boxes (k, 5) ``time`` [s] from now."""
+        boxes = self.boxes.copy()
+        boxes[:, :2] += self.velocity * time
+        return boxes
+
     def update(self) -> None:
         """Take in the newest report."""
         report, count = self._report.read(), len(self._fixed)

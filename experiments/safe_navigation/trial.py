@@ -1,5 +1,6 @@
 """One trial: the paper's loop, top to bottom."""
 
+import contextlib
 from collections.abc import Mapping
 from typing import Any
 
@@ -41,7 +42,7 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
     if condition["scene"] == "gallery":
         from experiments.safe_navigation.vision import vision_accuracy
 
-        return vision_accuracy(round(condition["duration"] * GALLERY_RATE), seed)
+        return vision_accuracy(max(1, round(condition["duration"] * GALLERY_RATE)), seed)
     world, robots, scene, eyes = build(condition, seed)
     platform = robots.platform
     sigma = condition["sigma_mm"] / 1000.0
@@ -93,22 +94,24 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
 
     cycles = round(condition["duration"] / PERIOD)
     spent, sampled = np.zeros(cycles), 0
-    for k, now in enumerate(simulation.ticks(condition["duration"])):
-        report, sampled_at = eyes.read()
-        hearing = robots.acknowledged & ~robots.stopping(now)
-        if carts:
-            carts.update()
-            see_boxes(carts.boxes, carts.velocity)
-        command = pilot.step(now, report, sampled_at, robots.executed, hearing)
-        spent[k] = pilot.seconds
-        robots.drive(command)
-        sampled += int(np.count_nonzero(getattr(navigator, "sampled", False)))
-        if simulation.noted:
-            goals = pilot.shuttle.goals
-            waypoints = getattr(navigator, "waypoints", goals)
-            simulation.note(goals=goals, waypoints=waypoints, stops=pilot.stops)
+    # carts are shown where they will be when the command takes effect
+    lead = condition["latency"] * PERIOD if condition["predict"] else 0.0
+    with contextlib.closing(simulation):
+        for k, now in enumerate(simulation.ticks(condition["duration"])):
+            report, sampled_at = eyes.read()
+            hearing = robots.acknowledged & ~robots.stopping(now)
+            if carts:
+                carts.update()
+                see_boxes(carts.ahead(lead), carts.velocity)
+            command = pilot.step(now, report, sampled_at, robots.executed, hearing)
+            spent[k] = pilot.seconds
+            robots.drive(command)
+            sampled += int(np.count_nonzero(getattr(navigator, "sampled", False)))
+            if simulation.noted:
+                goals = pilot.shuttle.goals
+                waypoints = getattr(navigator, "waypoints", goals)
+                simulation.note(goals=goals, waypoints=waypoints, stops=pilot.stops)
 
-    simulation.close()
     each = 1e6 * spent / robots.n
     return {
         "goals": int(pilot.shuttle.reached.sum()),

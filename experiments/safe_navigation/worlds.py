@@ -27,7 +27,8 @@ def build(condition: Mapping[str, Any], seed: int) -> tuple[World, Group, Scene,
     its own.
 
     Raises:
-        InvalidInputError: A drive or a sensing that needs bodies, without them.
+        InvalidInputError: A drive or a sensing that needs bodies, without them, or that the scene
+            does not take.
     """
     if condition["mode"] == "metric":
         for name, without in (("drive", "planar"), ("sensing", "report")):
@@ -36,6 +37,11 @@ def build(condition: Mapping[str, Any], seed: int) -> tuple[World, Group, Scene,
                     f"{name}={condition[name]} needs mode=physical; mode=metric takes "
                     f"{name}={without}"
                 )
+    if condition["scene"] == "carts" and condition["sensing"] != "report":
+        raise InvalidInputError(
+            f"scene=carts takes sensing=report, since carts are reported at once; not "
+            f"sensing={condition['sensing']}"
+        )
     sigma = condition["sigma_mm"] / 1000.0
     place = scene(condition["scene"])
     starts = place.starts

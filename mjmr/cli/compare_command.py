@@ -20,9 +20,10 @@ EXAMPLES
   mjmr compare published mine --by scene,sigma_mm --metrics overlap_mm_s,goals
   mjmr compare published mine --only mode=metric --out difference.json
 
-Trials are paired by condition and seed. The interval is of the mean of B - A (95 %, bootstrap over
-pairs); p is Wilcoxon's signed-rank test, two-sided, marked * below 0.01. With several rows p (Holm)
-is adjusted for their number: among many comparisons some p below 0.01 come by chance.
+Trials are paired by condition and seed; pairs of one seed under several conditions are averaged,
+since they are not independent. The interval is of the mean of B - A (95 %, bootstrap over seeds);
+p is Wilcoxon's signed-rank test, two-sided, marked * below 0.01. With several rows p (Holm) is
+adjusted for their number: among many comparisons some p below 0.01 come by chance.
 
 EXIT CODES
   0  the runs were compared, whatever came of it
@@ -98,7 +99,8 @@ def _table(rows: "Sequence[Difference]") -> Any:
         table.add_column(header, justify="right")
     for r in rows:
         cells = [group_text(r.group)] * split + [r.metric, f"{r.a:.4g}", f"{r.b:.4g}"]
-        cells += [f"{r.difference:+.4g}", f"[{r.low:.4g}, {r.high:.4g}]", str(r.n)]
+        cells += [f"{r.difference:+.4g}", f"[{r.low:.4g}, {r.high:.4g}]"]
+        cells += [f"{r.n}" if r.n == r.seeds else f"{r.n} ({r.seeds} seeds)"]
         cells += [_p(r.p)] + [_p(r.p_holm)] * many
         table.add_row(*map(Text, cells))
     return table

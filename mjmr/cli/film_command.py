@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-from mjmr.cli.parsing import SizeName, StudyName, option, parse
+from mjmr.cli.parsing import SizeName, StudyName, check_file, option, parse
 from mjmr.errors import GL_ADVICE, MissingGLError, MjmrError
 
 _MORE = """
@@ -62,6 +62,7 @@ def main(arguments: Sequence[str]) -> int:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as e:
         raise MjmrError(f"cannot write to {path.parent}: {e.strerror}") from e
+    check_file(path)
     prepare = study.resolve("prepare")
     messages = Console(stderr=True)
     try:

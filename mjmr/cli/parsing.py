@@ -5,6 +5,7 @@ import io
 import re
 import textwrap
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import tyro
@@ -97,6 +98,18 @@ def whole_number(name: str, text: str | None, least: int = 1) -> int | None:
     if not re.fullmatch(r"0*\d{1,9}", text, re.ASCII) or int(text) < least:
         raise InvalidInputError(f"{name} must be a whole number of at least {least}, not {text!r}")
     return int(text)
+
+
+def check_file(path: Path) -> None:
+    """Refuse a file that cannot be written, before anything is computed for it.
+
+    Raises:
+        InvalidInputError: Its folder is not there, or it is a folder itself.
+    """
+    if not path.parent.is_dir():
+        raise InvalidInputError(f"cannot write {path}: there is no folder {path.parent}")
+    if path.is_dir():
+        raise InvalidInputError(f"cannot write {path}: it is a folder")
 
 
 def show(text: Any, **options: Any) -> None:

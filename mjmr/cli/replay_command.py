@@ -9,7 +9,7 @@ from typing import Annotated
 from tyro.conf import Positional
 
 from mjmr.cli.parsing import option, parse
-from mjmr.errors import GL_ADVICE, InvalidInputError, MissingGLError, MjmrError
+from mjmr.errors import GL_ADVICE, InvalidInputError, MissingGLError
 
 _MORE = """
 EXAMPLES
@@ -49,14 +49,13 @@ class Replay:
 def main(arguments: Sequence[str]) -> int:
     """Make a film from a file."""
     a = parse(Replay, "replay", arguments, _MORE)
-    from mjmr.cli.parsing import whole_number
+    from mjmr.cli.parsing import check_file, whole_number
     from mjmr.film_options import FilmOptions
 
     follow = whole_number("--follow", a.follow, least=0) or 0
     options = FilmOptions(camera=a.camera, follow=follow, look=a.look, speed=_speed(a.speed))
     out = a.out or a.file.with_suffix(".mp4")
-    if not out.parent.is_dir():
-        raise MjmrError(f"cannot write {out}: there is no folder {out.parent}")
+    check_file(out)
     from rich.console import Console
 
     from mjmr.progress import doing

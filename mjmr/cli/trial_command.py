@@ -11,13 +11,14 @@ from tyro.conf import Positional
 from mjmr.cli.parsing import (
     PartTexts,
     StudyName,
+    check_file,
     option,
     parse,
     part_choices,
     show,
     whole_number,
 )
-from mjmr.errors import GL_ADVICE, InvalidInputError, MissingGLError, MjmrError
+from mjmr.errors import GL_ADVICE, MissingGLError, MjmrError
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -86,8 +87,7 @@ def main(arguments: Sequence[str]) -> int:
         options = FilmOptions(camera=a.camera, look=a.look)
         film = None if a.film is None else _film_path(study, a.film, seed)
         for path in filter(None, (film, a.trace)):
-            if not path.parent.is_dir():
-                raise InvalidInputError(f"cannot write {path}: there is no folder {path.parent}")
+            check_file(path)
         if a.trace is not None:
             check_ending(a.trace)
         traces, outcome = _run(a.study, study, condition, seed, look=bool(film or a.trace))

@@ -337,3 +337,28 @@ def test_a_killed_driver_leaves_the_cluster_usable(tmp_path):
         driver.wait()
         assert all(psutil.pid_exists(p.pid) for p in found.worker_processes())
         assert len(run(found)) == 10
+
+
+def test_a_worker_that_turns_unfit_with_two_trials_in_hand_loses_none(tmp_path, monkeypatch):
+    """Both of its answers are there at the same look; the second is of a worker given up."""
+    import distributed
+
+    now = distributed.wait
+
+    def late(*arguments, **options):
+        time.sleep(1.0)
+        return now(*arguments, **options)
+
+    with Cluster(tmp_path, 2) as found:
+        made, heard = executor(found)
+        outcomes = made.run(Job(TOY), load_study(TOY).trials("quick"))
+        first = cluster._ANSWER
+        with distributed.Client(found.address, set_as_default=False) as client:
+            worst = min(client.nthreads())
+        worn = f"__import__('distributed').get_worker().address == {worst!r}"
+        monkeypatch.setattr(cluster, "_ANSWER", f"('unfit', 'is worn') if {worn} else {first}")
+        monkeypatch.setattr(distributed, "wait", late)
+        assert told(outcomes) == told(
+            compute(Job(TOY), *t) for t in load_study(TOY).trials("quick")
+        )
+    assert heard == [f"worker {worst} is worn; it gets no trials"]

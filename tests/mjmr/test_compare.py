@@ -218,7 +218,7 @@ def test_what_is_printed(tmp_path, runs, capsys, monkeypatch):
     assert main(["compare", *map(str, runs)]) == 0
     out = capsys.readouterr().out
     assert "toy-parts: 16 pairs of trials" in out
-    assert "4 comparisons: p < 0.01 in 1, after Holm's adjustment in 1" in out
+    assert "4 comparisons: p < 0.01 in 1, after Holm's adjustment in 0" in out
     assert "slow: holds -> fails" in out
     lost = save(tmp_path / "a", {**seeds([1, 2]), (0.8, 1): "lost"})
     assert main(["compare", str(lost), str(save(tmp_path / "b", seeds([1, 2, 3])))]) == 0

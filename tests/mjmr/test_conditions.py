@@ -143,6 +143,7 @@ def test_grid_refuses_what_is_not_declared(bad):
         lambda: Parameter("x", "", 1, values=(1, 1)),
         lambda: Parameter("x", "", float("inf")),
         lambda: Parameter("x", "", None),  # pyright: ignore
+        lambda: Parameter("x", "", 1.0, least=2.0),
     ],
 )
 def test_declarations_that_contradict_themselves_are_refused(build):
@@ -153,3 +154,10 @@ def test_declarations_that_contradict_themselves_are_refused(build):
 def test_reading_an_undeclared_name_lists_those_there_are():
     with pytest.raises(UnknownNameError, match="valid: sigma"):
         complete(PARAMETERS, {})["sgima"]
+
+
+def test_numbers_below_the_least_are_refused():
+    parameter = Parameter("duration", "", 1.0, unit="s", least=0.05)
+    assert parameter.parse("0.05") == 0.05
+    with pytest.raises(InvalidInputError, match=r"duration must be at least 0.05 s; got -1 s"):
+        parameter.parse("-1")

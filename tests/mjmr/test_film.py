@@ -176,3 +176,14 @@ def test_the_benchmark_of_films_says_what_it_measured():
     assert "1280 x 720, draft, 6 frames" in title
     assert "1 panel(s)" in one
     assert float(two.split(": ")[1].split(" [")[0]) > 0.5
+
+
+def test_a_renderer_leaves_the_model_as_it_is():
+    model = soccer([[0.0, 0.0, 0.0]])[0].spec().compile()
+    quality = model.vis.quality
+    before = (quality.shadowsize, quality.numslices, quality.numquads, quality.offsamples)
+    size = model.vis.global_.offwidth, model.vis.global_.offheight
+    with Renderer(model, 160, 120):
+        pass
+    assert (quality.shadowsize, quality.numslices, quality.numquads, quality.offsamples) == before
+    assert (model.vis.global_.offwidth, model.vis.global_.offheight) == size

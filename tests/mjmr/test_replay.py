@@ -220,6 +220,16 @@ def test_files_that_cannot_be_shown_are_refused_in_one_sentence(file, tmp_path, 
         entries = {name: archive[name] for name in archive.files if name != "poses"}
     np.savez(file, **entries)
     refused("damaged: it has no poses")
+    file.write_bytes(content)
+    refused("AxisError", rewritten(file, positions=lambda p: p[:, 0]))
+    file.write_bytes(content)
+    head = json.loads(str(np.load(file)["header"]))
+    del head["kind"]
+    refused("damaged: it has no kind", rewritten(file, header=lambda _: np.array(json.dumps(head))))
+    file.write_bytes(content)
+    refused("no .npz file of mjmr's", rewritten(file, header=lambda _: np.array("[1]")))
+    np.save(tmp_path / "array.npy", np.zeros(3))
+    refused("no .npz file of mjmr's", tmp_path / "array.npy")
 
 
 def test_bad_options_are_refused(file, tmp_path, capsys):
@@ -229,6 +239,8 @@ def test_bad_options_are_refused(file, tmp_path, capsys):
         ("--camera", "side"): "unknown camera 'side'",
         ("--follow", "-1"): "--follow must be a whole number of at least 0",
         ("--out", str(tmp_path / "no" / "a.mp4")): "there is no folder",
+        ("--out", str(tmp_path)): "it is a folder",
+        ("--camera", "chase", "--follow", "99"): "no robot 99 to follow; valid: 0 to 1",
     }.items():
         assert main(["replay", str(file), *words]) == 2
         assert sentence in capsys.readouterr().err
