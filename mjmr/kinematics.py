@@ -78,8 +78,10 @@ class KinematicSimulation(TickedSimulation):
     def _begin_period(self) -> None:
         team, time, period = self.team, self.time, self.control_period
         ramps = [g.next_ramp(time, period) for g in team.groups]
-        self._twist = team.stack([start for start, _ in ramps])
-        self._target = team.stack([target for _, target in ramps])
+        platforms = [g.platform for g in team.groups]
+        pairs = list(zip(platforms, ramps, strict=True))
+        self._twist = team.stack([p.twist_of(start) for p, (start, _) in pairs])
+        self._target = team.stack([p.twist_of(target) for p, (_, target) in pairs])
         self._rate = (self._target - self._twist) / period
 
     def _advance(self, steps: int) -> None:
