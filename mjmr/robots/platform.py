@@ -48,7 +48,7 @@ class Drive(Protocol):
         ...
 
     def ramp(self, data: "mujoco.MjData", start: Array, target: Array, period: float) -> None:
-        """Set the actuators for one control period, from command ``start`` to ``target``, (n, c)."""
+        """Set the actuators for one period, from command ``start`` to ``target``, (n, c)."""
         ...
 
 
@@ -56,8 +56,8 @@ class Platform(ABC):
     """A kind of robot.
 
     Commands are what the real robot takes; ``command_names`` says what their columns are. A robot
-    that can drive in any direction takes twists: forward and left [m/s], anticlockwise [rad/s], body
-    frame.
+    that can drive in any direction takes twists: forward and left [m/s], anticlockwise [rad/s],
+    body frame.
 
     Attributes:
         name: Used for body names: ``soccer_bot0/base``.
