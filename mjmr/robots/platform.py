@@ -67,6 +67,7 @@ class Platform(ABC):
         max_twist: Largest speed in the plane [m/s] and yaw rate [rad/s] that a command can ask for.
         braking: Deceleration of the robot's own emergency stop [m/s^2].
         limits: What its drive follows; measured, see the platform.
+        wheels: Names of the wheels that encoders can count, in order.
     """
 
     name: str
@@ -76,6 +77,7 @@ class Platform(ABC):
     max_twist: tuple[float, float]
     braking: float
     limits: DriveLimits
+    wheels: tuple[str, ...] = ()
 
     @abstractmethod
     def model(self, number: int, team: str) -> "mujoco.MjSpec":
@@ -106,6 +108,14 @@ class Platform(ABC):
     def twist_of(self, command: Array) -> Array:
         """Twists (n, 3) that commands (n, c) ask for, body frame; may be the argument itself."""
         return command
+
+    def wheel_turns(self, way: Array) -> Array:
+        """Angles [rad] of ``wheels`` (n, k) by rolling without slip, for kinematic runs.
+
+        Args:
+            way: Integrals of the twists (n, 3) [m, m, rad], body frame.
+        """
+        return np.zeros((len(way), 0))
 
     def slew(self, current: Array, target: Array, period: float) -> Array:
         """Commands (n, c) the base gets to in one period from ``current``; its own limits.
