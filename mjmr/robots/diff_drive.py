@@ -18,12 +18,12 @@ TREADS = ("tread_left", "tread_right")
 
 
 class DiffDrive:
-    """Wheels' velocity servos whose set points are ramped; commands are (forward, turn).
+    """Wheels' velocity servos whose set points are ramped, with feed-forward.
 
-    Serves any free body ``base`` with a joint ``free`` whose origin is on the floor below the
-    middle of an axle, with hinges and servos named as ``WHEELS`` and wheels' contact shapes as ``TREADS``
-    (ellipsoids or spheres). Nothing but wheel speeds is closed: heading and position are what the
-    contacts make of them.
+    Commands are (forward, turn). It serves any free body with a joint ``free`` whose origin is on
+    the floor below the middle of an axle along y, hinges and servos named as ``WHEELS`` and wheels'
+    contact shapes, ellipsoids or spheres, named as ``TREADS``. Nothing but wheel speeds is closed:
+    heading and position are what the contacts make of them.
 
     Attributes:
         radius: Of the wheels [m], as drawn.
@@ -46,12 +46,20 @@ class DiffDrive:
         self._servo = np.array([[model.actuator(f"{p}{w}").id for w in WHEELS] for p in prefixes])
         self._act = model.actuator_actadr[self._servo]
         body = model.jnt_bodyid[free[0].id]
-        self._height, self._pitch = _rest(model, body, self._qpos[0], self._qvel[0])
+        alone = _alone(model, int(body))
+        self._height, self._pitch = _rest(alone, self._qpos[0], self._qvel[0])
         self.radius = float(model.geom_size[model.geom(f"{prefixes[0]}{TREADS[0]}").id, 0])
         self.rolling_radius = self.radius + self._height / 2.0
         hubs = [model.body_pos[model.jnt_bodyid[j.id]] for j in wheels[0]]
         self.track = float(hubs[0][1] - hubs[1][1])
         self.wheel_speeds = wheel_speeds(self.rolling_radius, self.track)
+        inertia = self._inertia(alone)
+        # a servo of gain k gives the torque t when its set point is t / k ahead
+        share = np.linalg.inv(self.wheel_speeds).T
+        share /= float(model.actuator_gainprm[self._servo[0, 0], 0])
+        self._ahead = share @ inertia[np.ix_([0, 2], [0, 2])]
+        # mass times how far its centre is ahead of the axle: what turning asks of the wheels
+        self._turning = share * inertia[1, 2]
 
     def place(self, data: "mujoco.MjData", poses: Array) -> None:
         """Put the robots at rest at ``poses``, as deep in the floor as weight presses them."""
@@ -82,12 +90,27 @@ class DiffDrive:
     def ramp(self, data: "mujoco.MjData", start: Array, target: Array, period: float) -> None:
         """Ramp the wheels' set points between two commands (n, 2) over one period.
 
-        They are shifted by half a step as in :class:`mjmr.robots.planar.PlanarDrive`.
+        They are ahead by what the torque of the ramp takes and by what it takes to turn a centre
+        of mass that is not on the axle, and shifted by half a step as in
+        :class:`mjmr.robots.planar.PlanarDrive`.
         """
         _ramp(
-            data.act, data.ctrl, self._act, self._servo, self.wheel_speeds,
-            start, target, period, self._half_step,
+            data.act, data.ctrl, self._act, self._servo, self.wheel_speeds, self._ahead,
+            self._turning, start, target, period, self._half_step,
         )  # fmt: skip
+
+    def _inertia(self, model: "mujoco.MjModel") -> Array:
+        """Inertia (3, 3) of one robot to its twist, wheels and rotors turning."""
+        import mujoco
+
+        data = mujoco.MjData(model)
+        mujoco.mj_forward(model, data)
+        full = np.zeros((model.nv, model.nv))
+        mujoco.mj_fullM(model, data, full)
+        motion = np.zeros((model.nv, 3))
+        motion[self._qvel[0, [0, 1, 5]], [0, 1, 2]] = 1.0
+        motion[self._wheel_qvel[0][:, None], [0, 2]] = self.wheel_speeds
+        return motion.T @ full @ motion
 
 
 def wheel_speeds(radius: float, track: float) -> Array:
@@ -96,32 +119,41 @@ def wheel_speeds(radius: float, track: float) -> Array:
 
 
 @njit
-def _ramp(act, ctrl, set_point, servo, speeds, start, target, period, half_step):
+def _ramp(act, ctrl, set_point, servo, speeds, ahead, turning, start, target, period, half_step):
     for i in range(start.shape[0]):
+        forward, turn = 0.5 * (start[i, 0] + target[i, 0]), 0.5 * (start[i, 1] + target[i, 1])
         for k in range(2):
-            begin = speeds[k, 0] * start[i, 0] + speeds[k, 1] * start[i, 1]
-            end = speeds[k, 0] * target[i, 0] + speeds[k, 1] * target[i, 1]
-            slope = (end - begin) / period
+            # acceleration of the centre of mass towards and around the axle, mid-ramp
+            begin = turning[k, 1] * forward * turn - turning[k, 0] * turn * turn
+            slope = 0.0
+            for c in range(2):
+                rate = (target[i, c] - start[i, c]) / period
+                begin += speeds[k, c] * start[i, c] + ahead[k, c] * rate
+                slope += speeds[k, c] * rate
             act[set_point[i, k]] = begin - slope * half_step
             ctrl[servo[i, k]] = slope
 
 
-def _rest(model: "mujoco.MjModel", body: int, qpos: Array, qvel: Array) -> tuple[float, float]:
-    """Height [m] and pitch [rad] at which contact carries a robot: both near zero.
-
-    Args:
-        model: The compiled model.
-        body: The robot's base.
-        qpos: Indices of its free joint (7,).
-        qvel: The same in ``qvel`` (6,).
-    """
-    import mujoco
-
+def _alone(model: "mujoco.MjModel", body: int) -> "mujoco.MjModel":
+    """Copy of a model in which only the robot with this base and the floor collide."""
     alone = copy.copy(model)
     others = alone.body_rootid[alone.geom_bodyid] != body
     others[model.geom(FLOOR).id] = False
     alone.geom_contype[others] = 0
     alone.geom_conaffinity[others] = 0
+    return alone
+
+
+def _rest(alone: "mujoco.MjModel", qpos: Array, qvel: Array) -> tuple[float, float]:
+    """Height [m] and pitch [rad] at which contact carries a robot: both near zero.
+
+    Args:
+        alone: Of :func:`_alone`.
+        qpos: Indices of its free joint (7,).
+        qvel: The same in ``qvel`` (6,).
+    """
+    import mujoco
+
     data = mujoco.MjData(alone)
 
     def acceleration(state: Array) -> Array:

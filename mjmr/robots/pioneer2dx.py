@@ -37,7 +37,7 @@ class Pioneer2DX(Platform):
     radius = 0.291
     height = 0.22
     max_twist = (1.6, 5.24)
-    braking = 4.0
+    braking = 3.5
     wheels = WHEELS
     wheel_radius = 0.0975
     track = 0.331
@@ -64,7 +64,7 @@ class Pioneer2DX(Platform):
         )
 
     def model(self, number: int, team: str) -> "mujoco.MjSpec":
-        """Model of one robot with its team's band and disc, and its number on top and back."""
+        """Model of one robot with its team's band and disc, and its number on the back."""
         import mujoco
 
         spec = mujoco.MjSpec.from_file(str(model_path(self.name)))
