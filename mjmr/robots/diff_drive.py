@@ -164,11 +164,13 @@ def _rest(alone: "mujoco.MjModel", qpos: Array, qvel: Array) -> tuple[float, flo
         return data.qacc[qvel[[2, 4]]].copy()
 
     # Newton's method: contact forces grow smoothly with depth
-    state, nudge = np.array([-2e-4, 0.0]), 1e-7
+    state: Array = np.array([-2e-4, 0.0])
+    nudge = 1e-7
+    nudges: Array = nudge * np.eye(2)
     for _ in range(30):
         found = acceleration(state)
-        slopes = [(acceleration(state + d) - found) / nudge for d in nudge * np.eye(2)]
-        state = state - np.linalg.solve(np.transpose(slopes), found)
+        slopes = [(acceleration(state + d) - found) / nudge for d in nudges]
+        state -= np.linalg.solve(np.transpose(slopes), found)
         if np.abs(found).max() < 1e-9:
             break
     return float(state[0]), float(state[1])

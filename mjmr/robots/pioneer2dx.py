@@ -27,7 +27,8 @@ class Pioneer2DX(Platform):
     faster wheel: an emergency stop keeps the curvature of the path.
 
     Attributes:
-        wheel_radius: [m]; under the robot's weight the wheels roll at 0.18 % less.
+        wheel_radius: [m].
+        rolling_radius: At which the wheels roll under the robot's weight [m]; what odometry needs.
         track: Between the wheels [m].
         turn_acceleration: Bound of the yaw rate's changes [rad/s^2].
     """
@@ -40,6 +41,7 @@ class Pioneer2DX(Platform):
     braking = 3.5
     wheels = WHEELS
     wheel_radius = 0.0975
+    rolling_radius = 0.09735
     track = 0.331
 
     def __init__(self, *, acceleration: float = 1.0, turn_acceleration: float = 3.0):
@@ -111,7 +113,7 @@ class Pioneer2DX(Platform):
 
     def wheel_turns(self, way: Array) -> Array:
         """Angles [rad] of the wheels (n, 2) after forward and turn came to ``way`` (n, 3)."""
-        return way[:, [0, 2]] @ wheel_speeds(self.wheel_radius, self.track).T
+        return way[:, [0, 2]] @ wheel_speeds(self.rolling_radius, self.track).T
 
     def slew(self, current: Array, target: Array, period: float) -> Array:
         """Commands (n, 2) as near to ``target`` as the accelerations allow in one period."""
