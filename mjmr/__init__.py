@@ -37,10 +37,12 @@ _WHERE = {
     "KinematicSimulation": "mjmr.kinematics",
     "Localizer": "mjmr.sensors.localizer",
     "MjmrError": "mjmr.errors",
+    "Pioneer2DX": "mjmr.robots.pioneer2dx",
     "Recording": "mjmr.recording",
     "Simulation": "mjmr.simulation",
     "SoccerBot": "mjmr.robots.soccer_bot",
     "Team": "mjmr.team",
+    "WheelEncoders": "mjmr.sensors.encoders",
     "World": "mjmr.world",
 }
 __all__ = sorted(_WHERE)  # pyright: ignore[reportUnsupportedDunderAll]

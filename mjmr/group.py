@@ -75,8 +75,8 @@ class Group:
         self.command_latency = int(command_latency)
         self.names = tuple(f"{name}{i}" for i in range(self.n))
         self.faults = FaultSchedule(self.n)
-        # no component above this: neither the speed nor the yaw rate can be over its limit
-        self._always_allowed = min(platform.max_twist[0] / 2**0.5, platform.max_twist[1])
+        self._columns = len(platform.command_names)
+        self._always_allowed = platform.always_allowed
         self._everyone = np.ones(self.n, dtype=bool)
         self._everyone.setflags(write=False)
         self.sensors: dict[str, Sensor] = {}
@@ -87,8 +87,8 @@ class Group:
     def reset(self) -> None:
         """Forget commands; called when a simulation takes the group."""
         self.clamped = np.zeros(self.n, dtype=np.int64)
-        self._command = np.zeros((self.n, 3))
-        self._executed = np.zeros((self.n, 3))
+        self._command = np.zeros((self.n, self._columns))
+        self._executed = np.zeros((self.n, self._columns))
         self._pending = deque([self._command] * self.command_latency)
         self._acknowledged = self._everyone
 
@@ -121,16 +121,18 @@ class Group:
         Commands over the platform's limits are scaled down and counted in ``clamped``.
 
         Args:
-            command: Twists, shape (n, 3): forward and left [m/s], anticlockwise [rad/s], body
-                frame.
+            command: Shape (n, c), what the platform takes (:attr:`Platform.command_names`); of a
+                robot that drives in any direction twists (n, 3): forward and left [m/s],
+                anticlockwise [rad/s], body frame.
 
         Raises:
             InvalidInputError: Another shape, or NaN or infinity (names the robots).
         """
         twist = np.array(command, dtype=np.float64)
-        if twist.shape != (self.n, 3):
+        if twist.shape != (self.n, self._columns):
             raise InvalidInputError(
-                f"{self.name}: a command must have shape ({self.n}, 3); got {twist.shape}"
+                f"{self.name}: a command must have shape ({self.n}, {self._columns}) "
+                f"({', '.join(self.platform.command_names)}); got {twist.shape}"
             )
         largest = float(np.abs(twist).max())
         if not largest < np.inf:
@@ -146,14 +148,14 @@ class Group:
 
     @property
     def command(self) -> Array:
-        """The command in force, (n, 3), body frame, scaled down to the limits; read-only."""
+        """The command in force, (n, c), scaled down to the limits; read-only."""
         view = self._command.view()
         view.setflags(write=False)
         return view
 
     @property
     def executed(self) -> Array:
-        """Twist the drives' set points have reached, (n, 3), body frame: telemetry.
+        """Command the drives' set points have reached, (n, c): telemetry.
 
         It is what a robot's firmware tries to do, not what the robot does: one pressed against a
         wall still reports its set point.
@@ -175,12 +177,13 @@ class Group:
         """Start and end of the ramp of the control period that begins at ``time``; for simulations.
 
         Returns:
-            Two arrays (n, 3), body frame; latency and faults applied.
+            Two commands (n, c); latency, the base's limits and faults applied.
         """
         target = self._command
         if self.command_latency:
             self._pending.append(target)
             target = self._pending.popleft()
+        target = self.platform.slew(self._executed, target, period)
         braked = self.faults.braked(time)
         self._acknowledged = self._everyone if braked is None else ~braked
         if braked is not None:

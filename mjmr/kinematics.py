@@ -47,6 +47,7 @@ class KinematicSimulation(TickedSimulation):
         self._pose = team.stack([g.start for g in team.groups]).copy()
         self._twist = np.zeros_like(self._pose)
         self._rate = np.zeros_like(self._pose)
+        self._way = np.zeros_like(self._pose)
         self._bind()
 
     def poses_of(self, group: "Group") -> Array:
@@ -56,6 +57,10 @@ class KinematicSimulation(TickedSimulation):
     def twists_of(self, group: "Group") -> Array:
         """True twists (n, 3), body frame."""
         return self._twist[self._rows[id(group)]].copy()
+
+    def wheel_angles_of(self, group: "Group") -> Array:
+        """Angles of the wheels (n, k) [rad] that roll without slip."""
+        return group.platform.wheel_turns(self._way[self._rows[id(group)]])
 
     def mover_poses(self) -> Array:
         """Poses (k, 7) of the free props: where they were put."""
@@ -78,21 +83,24 @@ class KinematicSimulation(TickedSimulation):
     def _begin_period(self) -> None:
         team, time, period = self.team, self.time, self.control_period
         ramps = [g.next_ramp(time, period) for g in team.groups]
-        self._twist = team.stack([start for start, _ in ramps])
-        self._target = team.stack([target for _, target in ramps])
+        platforms = [g.platform for g in team.groups]
+        pairs = list(zip(platforms, ramps, strict=True))
+        self._twist = team.stack([p.twist_of(start) for p, (start, _) in pairs])
+        self._target = team.stack([p.twist_of(target) for p, (_, target) in pairs])
         self._rate = (self._target - self._twist) / period
 
     def _advance(self, steps: int) -> None:
         dt = self.control_period if steps == self.substeps else steps * self.timestep
         end = self._target if steps == self.substeps else self._twist + self._rate * dt
         self._pose = integrate_ramp(self._pose, self._twist, end, dt)
+        self._way = self._way + (self._twist + end) * (dt / 2.0)
         self._twist = end
 
     def _end_period(self) -> None:
         """Nothing to check: finite commands move finite poses."""
 
     def _physics_state(self) -> Array:
-        return np.stack([self._pose, self._twist])
+        return np.stack([self._pose, self._twist, self._way])
 
     def _set_physics_state(self, state: Array) -> None:
-        self._pose, self._twist = state[0].copy(), state[1].copy()
+        self._pose, self._twist, self._way = (part.copy() for part in state)

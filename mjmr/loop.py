@@ -272,6 +272,10 @@ class TickedSimulation(ABC):
         """True twists (n, 3), body frame, a new array; for sensors and :class:`Truth`."""
 
     @abstractmethod
+    def wheel_angles_of(self, group: "Group") -> Array:
+        """Angles of the wheels that encoders count (n, k) [rad], a new array; for sensors."""
+
+    @abstractmethod
     def cart_boxes(self) -> Array:
         """Carts as boxes (k, 5), a new array; for sensors and :class:`Truth`."""
 

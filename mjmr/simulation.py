@@ -108,6 +108,11 @@ class Simulation(TickedSimulation):
         """True twists (n, 3), body frame."""
         return self._drives[id(group)].twists(self.data)
 
+    def wheel_angles_of(self, group: "Group") -> Array:
+        """Angles of the wheels (n, k) [rad]."""
+        drive: Any = self._drives[id(group)]
+        return drive.wheel_angles(self.data)
+
     def mover_poses(self) -> Array:
         """Poses (k, 7) of the free props."""
         ids = self._mover_ids

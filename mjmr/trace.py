@@ -98,8 +98,11 @@ class Trace:
         simulation = self._simulation
         team, truth = simulation.team, simulation.truth
         self._twists.append(team.stack([truth.twists(g) for g in team.groups]))
-        self._commands.append(team.stack([g.command.copy() for g in team.groups]))
-        self._set_points.append(team.stack([g.executed.copy() for g in team.groups]))
+        groups = team.groups
+        commands = [g.platform.twist_of(g.command.copy()) for g in groups]
+        set_points = [g.platform.twist_of(g.executed.copy()) for g in groups]
+        self._commands.append(team.stack(commands))
+        self._set_points.append(team.stack(set_points))
         if hasattr(simulation, "data"):  # a kinematic simulation has no contacts
             self._contacts.append(_contacts(simulation))
 

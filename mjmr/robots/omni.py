@@ -1,13 +1,13 @@
 """The omni drive: a free body that four omni-wheels move by their contact with the floor."""
 
 import copy
-import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mjmr.jit import njit
+from mjmr.robots.free_body import free_poses, free_twists
 from mjmr.robots.platform import FLOOR, Array
 
 if TYPE_CHECKING:
@@ -87,11 +87,11 @@ class OmniDrive:
 
     def poses(self, data: "mujoco.MjData") -> Array:
         """Poses (n, 3), world frame; yaw is the heading of the body's x axis in the plane."""
-        return _poses(data.qpos, self._qpos)
+        return free_poses(data.qpos, self._qpos)
 
     def twists(self, data: "mujoco.MjData") -> Array:
         """Twists (n, 3), body frame: velocity of the point on the floor below the centre."""
-        return _twists(data.qpos, data.qvel, self._qpos, self._qvel)
+        return free_twists(data.qpos, data.qvel, self._qpos, self._qvel)
 
     def ramp(self, data: "mujoco.MjData", start: Array, target: Array, period: float) -> None:
         """Ramp the wheels' set points from ``start`` to ``target`` over one period.
@@ -136,40 +136,6 @@ def _ramp(act, ctrl, set_point, servo, speeds, ahead, turning, start, target, pe
                 slope += speeds[k, c] * rate
             act[set_point[i, k]] = begin - slope * half_step
             ctrl[servo[i, k]] = slope
-
-
-@njit
-def _yaw(qpos, free):
-    w, x, y, z = qpos[free[3]], qpos[free[4]], qpos[free[5]], qpos[free[6]]
-    return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
-
-
-@njit
-def _poses(qpos, free):
-    poses = np.empty((free.shape[0], 3))
-    for i in range(free.shape[0]):
-        poses[i, 0], poses[i, 1] = qpos[free[i, 0]], qpos[free[i, 1]]
-        yaw = _yaw(qpos, free[i])
-        poses[i, 2] = math.pi if yaw == -math.pi else yaw
-    return poses
-
-
-@njit
-def _twists(qpos, qvel, free, velocity):
-    twists = np.empty((free.shape[0], 3))
-    for i in range(free.shape[0]):
-        yaw = _yaw(qpos, free[i])
-        c, s = math.cos(yaw), math.sin(yaw)
-        # of a free joint the linear velocity is in the world frame and the angular in the body's
-        vx, vy = qvel[velocity[i, 0]], qvel[velocity[i, 1]]
-        twists[i, 0], twists[i, 1] = c * vx + s * vy, c * vy - s * vx
-        w, x, y, z = qpos[free[i, 3]], qpos[free[i, 4]], qpos[free[i, 5]], qpos[free[i, 6]]
-        p, q, r = qvel[velocity[i, 3]], qvel[velocity[i, 4]], qvel[velocity[i, 5]]
-        twists[i, 2] = (
-            2.0 * (x * z - w * y) * p + 2.0 * (y * z + w * x) * q
-            + (w * w - x * x - y * y + z * z) * r
-        )  # fmt: skip
-    return twists
 
 
 def _wheel_speeds(

@@ -48,28 +48,36 @@ class Drive(Protocol):
         ...
 
     def ramp(self, data: "mujoco.MjData", start: Array, target: Array, period: float) -> None:
-        """Set the actuators for one control period, from twist ``start`` to ``target``, (n, 3)."""
+        """Set the actuators for one period, from command ``start`` to ``target``, (n, c)."""
         ...
 
 
 class Platform(ABC):
     """A kind of robot.
 
+    Commands are what the real robot takes; ``command_names`` says what their columns are. A robot
+    that can drive in any direction takes twists: forward and left [m/s], anticlockwise [rad/s],
+    body frame.
+
     Attributes:
         name: Used for body names: ``soccer_bot0/base``.
+        command_names: Of the columns of a command, in order.
         radius: Of the smallest upright cylinder around the body [m].
         height: Of the same cylinder [m].
         max_twist: Largest speed in the plane [m/s] and yaw rate [rad/s] that a command can ask for.
         braking: Deceleration of the robot's own emergency stop [m/s^2].
         limits: What its drive follows; measured, see the platform.
+        wheels: Names of the wheels that encoders can count, in order.
     """
 
     name: str
+    command_names: tuple[str, ...] = ("forward", "left", "turn")
     radius: float
     height: float
     max_twist: tuple[float, float]
     braking: float
     limits: DriveLimits
+    wheels: tuple[str, ...] = ()
 
     @abstractmethod
     def model(self, number: int, team: str) -> "mujoco.MjSpec":
@@ -90,6 +98,31 @@ class Platform(ABC):
     @abstractmethod
     def default_sensors(self) -> "dict[str, Sensor]":
         """Sensors every robot of this platform has unless others are mounted in their place."""
+
+    @property
+    def always_allowed(self) -> float:
+        """A command none of whose entries is above this needs no clamping."""
+        # neither the speed nor the yaw rate can then be over its limit
+        return min(self.max_twist[0] / 2**0.5, self.max_twist[1])
+
+    def twist_of(self, command: Array) -> Array:
+        """Twists (n, 3) that commands (n, c) ask for, body frame; may be the argument itself."""
+        return command
+
+    def wheel_turns(self, way: Array) -> Array:
+        """Angles [rad] of ``wheels`` (n, k) by rolling without slip, for kinematic runs.
+
+        Args:
+            way: Integrals of the twists (n, 3) [m, m, rad], body frame.
+        """
+        return np.zeros((len(way), 0))
+
+    def slew(self, current: Array, target: Array, period: float) -> Array:
+        """Commands (n, c) the base gets to in one period from ``current``; its own limits.
+
+        By default it follows any command within a period.
+        """
+        return target
 
     def clamp(self, command: Array) -> Array:
         """Scale commands (n, 3) into ``max_twist``; returns the argument when nothing is over."""

@@ -3,6 +3,7 @@
 from mjmr.sensors.base import Sensor
 from mjmr.sensors.camera import Camera
 from mjmr.sensors.cart_report import CartReport
+from mjmr.sensors.encoders import WheelEncoders
 from mjmr.sensors.localizer import Localizer
 
-__all__ = ["Camera", "CartReport", "Localizer", "Sensor"]
+__all__ = ["Camera", "CartReport", "Localizer", "Sensor", "WheelEncoders"]

@@ -1,0 +1,176 @@
+"""The differential drive: a free body on two driven wheels and supports that slide."""
+
+import copy
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mjmr.jit import njit
+from mjmr.robots.free_body import free_poses, free_twists
+from mjmr.robots.platform import FLOOR, Array
+
+if TYPE_CHECKING:
+    import mujoco
+
+WHEELS = ("wheel_left", "wheel_right")
+TREADS = ("tread_left", "tread_right")
+
+
+class DiffDrive:
+    """Wheels' velocity servos whose set points are ramped, with feed-forward.
+
+    Commands are (forward, turn). It serves any free body with a joint ``free`` whose origin is on
+    the floor below the middle of an axle along y, hinges and servos named as ``WHEELS`` and wheels'
+    contact shapes, ellipsoids or spheres, named as ``TREADS``. Nothing but wheel speeds is closed:
+    heading and position are what the contacts make of them.
+
+    Attributes:
+        radius: Of the wheels [m], as drawn.
+        rolling_radius: At which they roll under the robot's weight [m]: MuJoCo lets a contact act
+            half as deep as the shapes overlap.
+        track: Between the points where the wheels touch the floor [m].
+        wheel_speeds: Of one robot (2, 2): wheel speeds [rad/s], left and right, = this times
+            (forward, turn), by rolling without slip.
+    """
+
+    def __init__(self, model: "mujoco.MjModel", prefixes: Sequence[str]):
+        """Look up every index once, and the geometry of the wheels."""
+        self._half_step = model.opt.timestep / 2.0
+        free = [model.joint(f"{p}free") for p in prefixes]
+        self._qpos = np.array([j.qposadr[0] for j in free])[:, None] + np.arange(7)
+        self._qvel = np.array([j.dofadr[0] for j in free])[:, None] + np.arange(6)
+        wheels = [[model.joint(f"{p}{w}") for w in WHEELS] for p in prefixes]
+        self._wheel_qpos = np.array([[j.qposadr[0] for j in row] for row in wheels])
+        self._wheel_qvel = np.array([[j.dofadr[0] for j in row] for row in wheels])
+        self._servo = np.array([[model.actuator(f"{p}{w}").id for w in WHEELS] for p in prefixes])
+        self._act = model.actuator_actadr[self._servo]
+        body = model.jnt_bodyid[free[0].id]
+        alone = _alone(model, int(body))
+        self._height, self._pitch = _rest(alone, self._qpos[0], self._qvel[0])
+        self.radius = float(model.geom_size[model.geom(f"{prefixes[0]}{TREADS[0]}").id, 0])
+        self.rolling_radius = self.radius + self._height / 2.0
+        hubs = [model.body_pos[model.jnt_bodyid[j.id]] for j in wheels[0]]
+        self.track = float(hubs[0][1] - hubs[1][1])
+        self.wheel_speeds = wheel_speeds(self.rolling_radius, self.track)
+        inertia = self._inertia(alone)
+        # a servo of gain k gives the torque t when its set point is t / k ahead
+        share = np.linalg.inv(self.wheel_speeds).T
+        share /= float(model.actuator_gainprm[self._servo[0, 0], 0])
+        self._ahead = share @ inertia[np.ix_([0, 2], [0, 2])]
+        # mass times how far its centre is ahead of the axle: what turning asks of the wheels
+        self._turning = share * inertia[1, 2]
+
+    def place(self, data: "mujoco.MjData", poses: Array) -> None:
+        """Put the robots at rest at ``poses``, as deep in the floor as weight presses them."""
+        yaw, pitch = poses[:, 2] / 2.0, self._pitch / 2.0
+        data.qpos[self._qpos[:, :2]] = poses[:, :2]
+        data.qpos[self._qpos[:, 2]] = self._height
+        data.qpos[self._qpos[:, 3]] = np.cos(yaw) * np.cos(pitch)
+        data.qpos[self._qpos[:, 4]] = -np.sin(yaw) * np.sin(pitch)
+        data.qpos[self._qpos[:, 5]] = np.cos(yaw) * np.sin(pitch)
+        data.qpos[self._qpos[:, 6]] = np.sin(yaw) * np.cos(pitch)
+        data.qpos[self._wheel_qpos] = 0.0
+        data.qvel[self._qvel] = 0.0
+        data.qvel[self._wheel_qvel] = 0.0
+        data.act[self._act] = 0.0
+
+    def poses(self, data: "mujoco.MjData") -> Array:
+        """Poses (n, 3) of the middle of the axle, world frame."""
+        return free_poses(data.qpos, self._qpos)
+
+    def twists(self, data: "mujoco.MjData") -> Array:
+        """Twists (n, 3), body frame."""
+        return free_twists(data.qpos, data.qvel, self._qpos, self._qvel)
+
+    def wheel_angles(self, data: "mujoco.MjData") -> Array:
+        """Angles the wheels have turned (n, 2) [rad], left and right, forwards positive."""
+        return data.qpos[self._wheel_qpos]
+
+    def ramp(self, data: "mujoco.MjData", start: Array, target: Array, period: float) -> None:
+        """Ramp the wheels' set points between two commands (n, 2) over one period.
+
+        They are ahead by what the torque of the ramp takes and by what it takes to turn a centre
+        of mass that is not on the axle, and shifted by half a step as in
+        :class:`mjmr.robots.planar.PlanarDrive`.
+        """
+        _ramp(
+            data.act, data.ctrl, self._act, self._servo, self.wheel_speeds, self._ahead,
+            self._turning, start, target, period, self._half_step,
+        )  # fmt: skip
+
+    def _inertia(self, model: "mujoco.MjModel") -> Array:
+        """Inertia (3, 3) of one robot to its twist, wheels and rotors turning."""
+        import mujoco
+
+        data = mujoco.MjData(model)
+        mujoco.mj_forward(model, data)
+        full = np.zeros((model.nv, model.nv))
+        mujoco.mj_fullM(model, data, full)
+        motion = np.zeros((model.nv, 3))
+        motion[self._qvel[0, [0, 1, 5]], [0, 1, 2]] = 1.0
+        motion[self._wheel_qvel[0][:, None], [0, 2]] = self.wheel_speeds
+        return motion.T @ full @ motion
+
+
+def wheel_speeds(radius: float, track: float) -> Array:
+    """Speeds [rad/s] of the left and the right wheel (2, 2) per unit of (forward, turn)."""
+    return np.array([[1.0, -track / 2.0], [1.0, track / 2.0]]) / radius
+
+
+@njit
+def _ramp(act, ctrl, set_point, servo, speeds, ahead, turning, start, target, period, half_step):
+    for i in range(start.shape[0]):
+        forward, turn = 0.5 * (start[i, 0] + target[i, 0]), 0.5 * (start[i, 1] + target[i, 1])
+        for k in range(2):
+            # acceleration of the centre of mass towards and around the axle, mid-ramp
+            begin = turning[k, 1] * forward * turn - turning[k, 0] * turn * turn
+            slope = 0.0
+            for c in range(2):
+                rate = (target[i, c] - start[i, c]) / period
+                begin += speeds[k, c] * start[i, c] + ahead[k, c] * rate
+                slope += speeds[k, c] * rate
+            act[set_point[i, k]] = begin - slope * half_step
+            ctrl[servo[i, k]] = slope
+
+
+def _alone(model: "mujoco.MjModel", body: int) -> "mujoco.MjModel":
+    """Copy of a model in which only the robot with this base and the floor collide."""
+    alone = copy.copy(model)
+    others = alone.body_rootid[alone.geom_bodyid] != body
+    others[model.geom(FLOOR).id] = False
+    alone.geom_contype[others] = 0
+    alone.geom_conaffinity[others] = 0
+    return alone
+
+
+def _rest(alone: "mujoco.MjModel", qpos: Array, qvel: Array) -> tuple[float, float]:
+    """Height [m] and pitch [rad] at which contact carries a robot: both near zero.
+
+    Args:
+        alone: Of :func:`_alone`.
+        qpos: Indices of its free joint (7,).
+        qvel: The same in ``qvel`` (6,).
+    """
+    import mujoco
+
+    data = mujoco.MjData(alone)
+
+    def acceleration(state: Array) -> Array:
+        data.qpos[qpos] = 0.0
+        data.qpos[qpos[2]] = state[0]
+        data.qpos[qpos[[3, 5]]] = np.cos(state[1] / 2.0), np.sin(state[1] / 2.0)
+        mujoco.mj_forward(alone, data)
+        return data.qacc[qvel[[2, 4]]].copy()
+
+    # Newton's method: contact forces grow smoothly with depth
+    state: Array = np.array([-2e-4, 0.0])
+    nudge = 1e-7
+    nudges: Array = nudge * np.eye(2)
+    for _ in range(30):
+        found = acceleration(state)
+        slopes = [(acceleration(state + d) - found) / nudge for d in nudges]
+        state -= np.linalg.solve(np.transpose(slopes), found)
+        if np.abs(found).max() < 1e-9:
+            break
+    return float(state[0]), float(state[1])

@@ -1,0 +1,53 @@
+"""Planar poses and twists of robots that are free bodies."""
+
+import math
+
+import numpy as np
+
+from mjmr.jit import njit
+
+
+@njit
+def _yaw(qpos, free):
+    w, x, y, z = qpos[free[3]], qpos[free[4]], qpos[free[5]], qpos[free[6]]
+    return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
+
+
+@njit
+def free_poses(qpos, free):
+    """Poses (n, 3), world frame, of the free joints at ``free`` (n, 7) in ``qpos``.
+
+    Yaw is the heading of the body's x axis in the plane, in (-pi, pi].
+    """
+    poses = np.empty((free.shape[0], 3))
+    for i in range(free.shape[0]):
+        poses[i, 0], poses[i, 1] = qpos[free[i, 0]], qpos[free[i, 1]]
+        yaw = _yaw(qpos, free[i])
+        poses[i, 2] = math.pi if yaw == -math.pi else yaw
+    return poses
+
+
+@njit
+def free_twists(qpos, qvel, free, velocity):
+    """Twists (n, 3) of free joints in the frame of their heading.
+
+    Args:
+        qpos: Positions.
+        qvel: Velocities.
+        free: Indices of the joints in ``qpos`` (n, 7).
+        velocity: Indices in ``qvel`` (n, 6).
+    """
+    twists = np.empty((free.shape[0], 3))
+    for i in range(free.shape[0]):
+        yaw = _yaw(qpos, free[i])
+        c, s = math.cos(yaw), math.sin(yaw)
+        # of a free joint the linear velocity is in the world frame and the angular in the body's
+        vx, vy = qvel[velocity[i, 0]], qvel[velocity[i, 1]]
+        twists[i, 0], twists[i, 1] = c * vx + s * vy, c * vy - s * vx
+        w, x, y, z = qpos[free[i, 3]], qpos[free[i, 4]], qpos[free[i, 5]], qpos[free[i, 6]]
+        p, q, r = qvel[velocity[i, 3]], qvel[velocity[i, 4]], qvel[velocity[i, 5]]
+        twists[i, 2] = (
+            2.0 * (x * z - w * y) * p + 2.0 * (y * z + w * x) * q
+            + (w * w - x * x - y * y + z * z) * r
+        )  # fmt: skip
+    return twists
