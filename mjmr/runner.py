@@ -12,7 +12,7 @@ import shlex
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,15 +20,16 @@ from typing import TYPE_CHECKING, Any
 from mjmr.claims import Verdict, judge_all
 from mjmr.conditions import parse_filter
 from mjmr.errors import GL_ADVICE, InvalidInputError, MissingGLError, MjmrError
-from mjmr.failures import failure_path, keep_replay
+from mjmr.failures import keep_replay
 from mjmr.files import temporary_folder, write_atomically
 from mjmr.film_options import FilmOptions
 from mjmr.parts import Job, PartChoice
-from mjmr.progress import Progress, doing, say, standard_output
+from mjmr.progress import Progress, doing, say
 from mjmr.registry import load_study
+from mjmr.run_words import print_verdicts, tell_failures, told
 from mjmr.store import Outcome, Store, is_of, set_aside
 from mjmr.study import Study, Trial
-from mjmr.study_calls import call_study, debugging, make_film
+from mjmr.study_calls import call_study, make_film
 from mjmr.table import NoTrialsError, Row, Table
 
 if TYPE_CHECKING:
@@ -177,14 +178,14 @@ def run_study(
                 return run.interrupted(table)
             verdicts = judge_all(claims, table, options.size)
             troubles = run.write_files(asked, verdicts)
-            _print_verdicts(console, study, options.size, verdicts)
+            print_verdicts(console, study, options.size, verdicts)
             troubles += run.film()
             run.write_record(asked, verdicts)
     except KeyboardInterrupt:
         return run.interrupted(None)
     except OSError as e:
         raise MjmrError(f"run in {folder} stopped: {e}") from e
-    failed = _tell_failures(messages, folder, asked, verdicts)
+    failed = tell_failures(messages, folder, asked, verdicts)
     for trouble in troubles:
         say(messages, trouble)
     found = committed.differences(expected, verdicts) if options.check else []
@@ -289,7 +290,7 @@ class _Run:
         """Write claims, and plots of the trials asked for; returns what went wrong."""
         from mjmr import reports
 
-        title = f"{_told(self.study, self.options.size)}: {self.study.title}"
+        title = f"{told(self.study, self.options.size)}: {self.study.title}"
         write_atomically(self.folder / "claims.json", reports.verdicts_json(verdicts))
         write_atomically(self.folder / "claims.md", reports.verdicts_markdown(verdicts, title))
         plots = self.study.plots
@@ -384,45 +385,6 @@ def _row(trial: Trial, outcome: Outcome | None) -> Row:
         return Row(condition, seed, "missing")
     metrics = {**outcome.metrics, **outcome.wall}
     return Row(condition, seed, outcome.status, metrics, outcome.error)
-
-
-def _told(study: Study, size: str) -> str:
-    """What was run, as titles say it."""
-    return f"{study.name}, size {size}{study.swapped}"
-
-
-def _print_verdicts(
-    console: "Console | None", study: Study, size: str, verdicts: Sequence[Verdict]
-) -> None:
-    from mjmr.reports import undecided_line, verdict_table
-
-    console = console or standard_output(140)
-    if verdicts:
-        console.print(verdict_table(verdicts, _told(study, size), size))
-        if line := undecided_line(verdicts, size):
-            console.print(line, style="dim")
-
-
-def _tell_failures(
-    messages: "Console", folder: Path, table: Table, verdicts: Sequence[Verdict]
-) -> bool:
-    """Say which trials did not finish and which claims could not be evaluated; True if any."""
-    lost = [row for row in table.fresh().rows if row.status != "ok"]
-    for row in lost[:5]:
-        say(messages, f"trial failed: {row.condition} seed {row.seed}: {row.error}")
-        if (replay := failure_path(folder, row.condition, row.seed)).exists():
-            say(messages, f"replay with: {shlex.join(['mjmr', 'replay', str(replay)])}")
-    if len(lost) > 5:
-        say(messages, f"... and {len(lost) - 5} more; mjmr export lists them all")
-    if any(row.status == "no-gl" for row in lost):
-        say(messages, GL_ADVICE)
-    elif lost:
-        say(messages, "failed trials are kept as such; compute them again with --retry")
-    mistakes = [v for v in verdicts if v.error]
-    for verdict in mistakes:
-        text = verdict.error if debugging() else f"claim {verdict.claim.id}: {verdict.why}"
-        say(messages, text.rstrip())
-    return bool(lost or mistakes)
 
 
 @contextlib.contextmanager

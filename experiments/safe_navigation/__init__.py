@@ -34,11 +34,22 @@ study = Study(
             "scene",
             "A: three boxes, parallel lanes; cross4, cross10: no boxes, mirrored goals, a planner "
             "blind to robots; stranger10: cross10 with one robot that goes its way at 1 m/s and "
-            "minds nobody; carts: three boxes that go to and fro, parallel lanes; overlap: two "
+            "minds nobody; carts: three boxes that go to and fro, parallel lanes; carts-apart: "
+            "the same, the boxes never nearer to each other than a robot is wide; overlap: two "
             "pairs start inside each other; straight: one robot; gallery: no run, images of ten "
             "robots at random poses, 10 for each second of duration",
             "A",
-            ("A", "cross4", "cross10", "stranger10", "carts", "overlap", "straight", "gallery"),
+            (
+                "A",
+                "cross4",
+                "cross10",
+                "stranger10",
+                "carts",
+                "carts-apart",
+                "overlap",
+                "straight",
+                "gallery",
+            ),
         ),
         Parameter("search", "whether the velocity-space safety search is on", True),
         Parameter(

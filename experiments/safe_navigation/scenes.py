@@ -12,6 +12,21 @@ from numpy.typing import NDArray
 
 REACH = 2.1  # goals lie at x = +-REACH [m]
 _LANES = (1.2, 0.4, -0.4, -1.2)
+# two that close and open the way in turn, and one that goes along it
+_CARTS = {
+    # their ways cross: carts meet, and a robot may be squeezed between them
+    "carts": (
+        (-0.7, 0.9, np.pi / 2, 0.5, 0.3, 1.2, 0.3),
+        (0.7, -0.9, np.pi / 2, 0.5, 0.3, 1.2, 0.3),
+        (0.0, 0.0, 0.0, 0.4, 0.3, 1.6, 0.3),
+    ),
+    # a robot fits between any two, and between each and the walls, wherever they are
+    "carts-apart": (
+        (-0.7, 1.15, np.pi / 2, 0.5, 0.3, 1.0, 0.3),
+        (0.7, -1.15, np.pi / 2, 0.5, 0.3, 1.0, 0.3),
+        (0.0, 0.0, 0.0, 0.4, 0.3, 1.6, 0.3),
+    ),
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,17 +64,13 @@ def scene(name: str) -> Scene:
         )
     if name == "straight":
         return Scene(starts=_at(-REACH, [0.0]), far=_at(REACH, [0.0]), near=_at(-REACH, [0.0]))
-    if name == "carts":
-        # two that close and open the way in turn, and one that goes along it; a robot fits between
-        # any two of them, and between each and the walls, wherever they are
-        carts = (
-            (-0.7, 1.15, np.pi / 2, 0.5, 0.3, 1.0, 0.3),
-            (0.7, -1.15, np.pi / 2, 0.5, 0.3, 1.0, 0.3),
-            (0.0, 0.0, 0.0, 0.4, 0.3, 1.6, 0.3),
-        )
+    if name in _CARTS:
         lanes = np.array(_LANES)
         return Scene(
-            starts=_at(-REACH, lanes), far=_at(REACH, lanes), near=_at(-REACH, lanes), carts=carts
+            starts=_at(-REACH, lanes),
+            far=_at(REACH, lanes),
+            near=_at(-REACH, lanes),
+            carts=_CARTS[name],
         )
     ten = name in ("cross10", "stranger10")
     lanes = np.linspace(-1.8, 1.8, 10) if ten else np.array(_LANES)

@@ -14,6 +14,7 @@ _MARGINS = (1.0, 2.0, 3.0, 4.0)
 OMNI_MARGIN = 10.0  # mm
 VISION_MARGIN = 4.0  # mm
 VISION_SIGMA = 0.4  # mm along x and y: the error of the vision, measured on images of other seeds
+CARTS = ("carts", "carts-apart")
 OMNI = {"drive": "omni", "limits": "measured", "margin_mm": OMNI_MARGIN}
 VISION = {"margin_mm": VISION_MARGIN, "sigma_mm": VISION_SIGMA}
 
@@ -75,8 +76,8 @@ def _whole(seeds: int, zero_seeds: int, physical_seeds: int) -> tuple[Grid, ...]
         Grid(mode="physical", scene="straight", duration=10.0, seeds=1),
         Grid(scene="stranger10", foresee=(True, False), seeds=seeds),
         Grid(scene="stranger10", search=False, seeds=seeds),
-        Grid(scene="carts", search=(True, False), seeds=seeds),
-        Grid(mode="physical", scene="carts", margin_mm=1.0, seeds=physical_seeds),
+        Grid(scene=CARTS, search=(True, False), seeds=seeds),
+        Grid(mode="physical", scene=CARTS, margin_mm=1.0, seeds=physical_seeds),
         Grid(
             mode="physical",
             scene="cross4",

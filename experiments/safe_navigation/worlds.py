@@ -37,13 +37,13 @@ def build(condition: Mapping[str, Any], seed: int) -> tuple[World, Group, Scene,
                     f"{name}={condition[name]} needs mode=physical; mode=metric takes "
                     f"{name}={without}"
                 )
-    if condition["scene"] == "carts" and condition["sensing"] != "report":
-        raise InvalidInputError(
-            f"scene=carts takes sensing=report, since carts are reported at once; not "
-            f"sensing={condition['sensing']}"
-        )
     sigma = condition["sigma_mm"] / 1000.0
     place = scene(condition["scene"])
+    if place.carts and condition["sensing"] != "report":
+        raise InvalidInputError(
+            f"scene={condition['scene']} takes sensing=report, since carts are reported at once; "
+            f"not sensing={condition['sensing']}"
+        )
     starts = place.starts
     headings = np.zeros(len(starts))
     if condition["scene"] == "straight":

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mjmr.jit import njit
-from mjmr.robots.free_body import free_poses, free_twists
+from mjmr.robots.free_body import free_poses, free_twists, twist_inertia
 from mjmr.robots.platform import FLOOR, Array
 
 if TYPE_CHECKING:
@@ -53,7 +53,8 @@ class DiffDrive:
         hubs = [model.body_pos[model.jnt_bodyid[j.id]] for j in wheels[0]]
         self.track = float(hubs[0][1] - hubs[1][1])
         self.wheel_speeds = wheel_speeds(self.rolling_radius, self.track)
-        inertia = self._inertia(alone)
+        sideways = np.insert(self.wheel_speeds, 1, 0.0, axis=1)
+        inertia = twist_inertia(alone, self._qvel[0], self._wheel_qvel[0], sideways)
         # a servo of gain k gives the torque t when its set point is t / k ahead
         share = np.linalg.inv(self.wheel_speeds).T
         share /= float(model.actuator_gainprm[self._servo[0, 0], 0])
@@ -98,19 +99,6 @@ class DiffDrive:
             data.act, data.ctrl, self._act, self._servo, self.wheel_speeds, self._ahead,
             self._turning, start, target, period, self._half_step,
         )  # fmt: skip
-
-    def _inertia(self, model: "mujoco.MjModel") -> Array:
-        """Inertia (3, 3) of one robot to its twist, wheels and rotors turning."""
-        import mujoco
-
-        data = mujoco.MjData(model)
-        mujoco.mj_forward(model, data)
-        full = np.zeros((model.nv, model.nv))
-        mujoco.mj_fullM(model, data, full)
-        motion = np.zeros((model.nv, 3))
-        motion[self._qvel[0, [0, 1, 5]], [0, 1, 2]] = 1.0
-        motion[self._wheel_qvel[0][:, None], [0, 2]] = self.wheel_speeds
-        return motion.T @ full @ motion
 
 
 def wheel_speeds(radius: float, track: float) -> Array:

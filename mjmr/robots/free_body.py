@@ -1,10 +1,18 @@
-"""Planar poses and twists of robots that are free bodies."""
+"""Planar poses, twists and inertia of robots that are free bodies on wheels."""
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mjmr.jit import njit
+from mjmr.robots.platform import Array
+
+if TYPE_CHECKING:
+    import mujoco
+
+Indices = NDArray[np.int64]
 
 
 @njit
@@ -51,3 +59,35 @@ def free_twists(qpos, qvel, free, velocity):
             + (w * w - x * x - y * y + z * z) * r
         )  # fmt: skip
     return twists
+
+
+def twist_inertia(
+    model: "mujoco.MjModel", velocity: Indices, wheels: Indices, speeds: Array
+) -> Array:
+    """Inertia (3, 3) of one robot to its twist, wheels and rotors turning.
+
+    Args:
+        model: The compiled model.
+        velocity: Indices of the robot's free joint in ``qvel`` (6,).
+        wheels: Indices of its wheels (k,).
+        speeds: Wheel speeds per unit of twist (k, 3).
+    """
+    motion = np.zeros((model.nv, 3))
+    motion[velocity[[0, 1, 5]], [0, 1, 2]] = 1.0
+    motion[wheels] = speeds
+    return motion.T @ _full_inertia(model) @ motion
+
+
+def total_mass(model: "mujoco.MjModel", velocity: Indices) -> float:
+    """Mass of one robot [kg], its parts included; arguments as in :func:`twist_inertia`."""
+    return float(_full_inertia(model)[velocity[0], velocity[0]])
+
+
+def _full_inertia(model: "mujoco.MjModel") -> Array:
+    import mujoco
+
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    full = np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, full)
+    return full

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mjmr.jit import njit
-from mjmr.robots.free_body import free_poses, free_twists
+from mjmr.robots.free_body import free_poses, free_twists, total_mass, twist_inertia
 from mjmr.robots.platform import FLOOR, Array
 
 if TYPE_CHECKING:
@@ -65,13 +65,13 @@ class OmniDrive:
         self.wheel_speeds = _wheel_speeds(
             model, [j.id for j in wheels[0]], treads[0], self._height / 2.0
         )
-        mass, inertia = self._inertia(apart)
+        inertia = twist_inertia(apart, self._qvel[0], self._wheel_qvel[0], self.wheel_speeds)
         # least torques that give a force and moment on the body; a servo of gain k gives the
         # torque t when its set point is t / k ahead
         share = np.linalg.pinv(self.wheel_speeds).T
         share /= float(model.actuator_gainprm[self._servo[0, 0], 0])
         self._ahead = share @ inertia
-        self._turning = share[:, :2] * mass
+        self._turning = share[:, :2] * total_mass(apart, self._qvel[0])
 
     def place(self, data: "mujoco.MjData", poses: Array) -> None:
         """Put the robots at rest at ``poses``, as deep in the floor as weight presses them."""
@@ -104,20 +104,6 @@ class OmniDrive:
             data.act, data.ctrl, self._act, self._servo, self.wheel_speeds, self._ahead,
             self._turning, start, target, period, self._half_step,
         )  # fmt: skip
-
-    def _inertia(self, model: "mujoco.MjModel") -> tuple[float, Array]:
-        """Mass [kg] and inertia (3, 3) of one robot to its twist, wheels and rotors turning."""
-        import mujoco
-
-        data = mujoco.MjData(model)
-        mujoco.mj_forward(model, data)
-        full = np.zeros((model.nv, model.nv))
-        mujoco.mj_fullM(model, data, full)
-        motion = np.zeros((model.nv, 3))
-        motion[self._qvel[0, [0, 1, 5]], [0, 1, 2]] = 1.0
-        mass = full[self._qvel[0, 0], self._qvel[0, 0]]
-        motion[self._wheel_qvel[0]] = self.wheel_speeds
-        return float(mass), motion.T @ full @ motion
 
 
 @njit

@@ -3,8 +3,9 @@ import pytest
 
 from controllers.motion import Navigator, NavigatorConfig
 from controllers.motion.clearance import prepare_boxes
+from controllers.motion.depth import static_depth
 from controllers.motion.prediction import PIECES, fill_prediction
-from controllers.motion.safety import braking_command, reachable_box, static_depth
+from controllers.motion.safety import braking_command, reachable_box
 from tests.controllers.motion.scenes import BOUNDS, PERIOD, RADIUS, box_distance, stop_path
 
 B, A, T = 6.0, 3.0, PERIOD
