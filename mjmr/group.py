@@ -80,8 +80,10 @@ class Group:
         self._everyone = np.ones(self.n, dtype=bool)
         self._everyone.setflags(write=False)
         self.sensors: dict[str, Sensor] = {}
+        self._replaceable: set[str] = set()
         for key, sensor in platform.default_sensors().items():
             self.mount(sensor, key)
+        self._replaceable = set(self.sensors)
         self.reset()
 
     def reset(self) -> None:
@@ -103,13 +105,22 @@ class Group:
 
         Returns:
             The sensor.
+
+        Raises:
+            InvalidInputError: The name is taken, or the sensor is on another group.
         """
         key = name or sensor.name
         if sensor.carrier not in (None, self):
             raise InvalidInputError(f"this {sensor.name} is mounted on another group already")
         sensor.carrier = self
-        if key in self.sensors and self.sensors[key].name != sensor.name:
-            raise InvalidInputError(f"group {self.name!r} has another sensor named {key!r}")
+        if key in self.sensors and (
+            key not in self._replaceable or self.sensors[key].name != sensor.name
+        ):
+            raise InvalidInputError(
+                f"group {self.name!r} has a sensor named {key!r} already; mount it under another "
+                f"name than {', '.join(self.sensors)}"
+            )
+        self._replaceable.discard(key)
         self.sensors[key] = sensor
         setattr(self, key, sensor)
         return sensor

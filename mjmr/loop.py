@@ -250,18 +250,19 @@ class TickedSimulation(ABC):
 
         Observers keep their own state and are not part of it.
         """
-        parts = tuple(g.state() for g in self.world.groups) + tuple(
-            s.state() for s in self._sensors
-        )
+        parts = tuple(owner.state() for owner in self._owners())
         return Snapshot(self.time, self.step, self._physics_state(), parts)
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go back (or forward) to ``snapshot``, taken in a simulation of the same world."""
         self.step = snapshot.step
         self._set_physics_state(snapshot.physics)
-        owners: Sequence[Any] = [*self.world.groups, *self._sensors]
-        for owner, state in zip(owners, snapshot.parts, strict=True):
+        for owner, state in zip(self._owners(), snapshot.parts, strict=True):
             owner.set_state(state)
+
+    def _owners(self) -> Sequence[Any]:
+        """Who has a state besides the physics, in the order of a snapshot's parts."""
+        return [*self.world.groups, *self._sensors]
 
     @abstractmethod
     def poses_of(self, group: "Group") -> Array:
@@ -270,6 +271,15 @@ class TickedSimulation(ABC):
     @abstractmethod
     def twists_of(self, group: "Group") -> Array:
         """True twists (n, 3), body frame, a new array; for sensors and :class:`Truth`."""
+
+    def base_poses_of(self, group: "Group") -> Array:
+        """True poses of the base bodies (n, 7), a new array; for sensors.
+
+        Position [m] and quaternion (w, x, y, z), world frame: with height and tilt.
+        """
+        poses = self.poses_of(group)
+        half, nil = poses[:, 2] / 2.0, np.zeros(len(poses))
+        return np.column_stack([poses[:, :2], nil, np.cos(half), nil, nil, np.sin(half)])
 
     @abstractmethod
     def wheel_angles_of(self, group: "Group") -> Array:

@@ -1,7 +1,8 @@
 """Simulation: a World in MuJoCo, advanced between the ticks of a control loop."""
 
+import math
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import mujoco
@@ -13,6 +14,8 @@ from mjmr.errors import InvalidInputError, SimulationDivergedError
 from mjmr.guard import plausible
 from mjmr.last_second import LastSecond
 from mjmr.loop import Snapshot, TickedSimulation
+from mjmr.robots.platform import FramedDrive, TiltedDrive
+from mjmr.start_check import check_start
 
 if TYPE_CHECKING:
     from mjmr.group import Group
@@ -55,7 +58,8 @@ class Simulation(TickedSimulation):
             bound: Any coordinate further than this from the origin [m] counts as diverged.
 
         Raises:
-            InvalidInputError: A model without data, or with a timestep that does not divide.
+            InvalidInputError: A model without data, or with a timestep that does not divide; robots
+                that start inside each other, props or walls.
         """
         substeps = 0
         if (model is None) != (data is None):
@@ -82,6 +86,13 @@ class Simulation(TickedSimulation):
         self._bounds = _bounds(self.model, bound)
         self._drives = {id(g): g.platform.bind(model, g.prefixes) for g in world.groups}
         self._each = [(g, self._drives[id(g)]) for g in world.groups]
+        self._framed = [d for _, d in self._each if isinstance(d, FramedDrive)]
+        for drive in self._framed:
+            if drive.frame < self.timestep:
+                raise InvalidInputError(
+                    f"a drive's frame of {drive.frame:g} s is shorter than a timestep of "
+                    f"{self.timestep:g} s; set dt_max to at most the frame"
+                )
         self._step_watchers: list[Callable[[], None]] = []
         bodies = [self.model.body(name).id for name, _ in world.movers]
         self._mover_ids = np.array(bodies, dtype=np.int64)
@@ -91,6 +102,8 @@ class Simulation(TickedSimulation):
         if self._carts is not None:
             self._carts.place(data, 0.0)
         mujoco.mj_forward(model, data)
+        if not world.overlap:
+            check_start(self.model, self.data, self.team.names)
         # live views: looking the arrays up again would cost more than the check
         self._qpos, self._warning_counts = self.data.qpos, self.data.warning.number
         self._warnings = int(self._warning_counts.sum())
@@ -107,6 +120,13 @@ class Simulation(TickedSimulation):
     def twists_of(self, group: "Group") -> Array:
         """True twists (n, 3), body frame."""
         return self._drives[id(group)].twists(self.data)
+
+    def base_poses_of(self, group: "Group") -> Array:
+        """True poses of the base bodies (n, 7): position, quaternion."""
+        drive = self._drives[id(group)]
+        if isinstance(drive, TiltedDrive):
+            return drive.base_poses(self.data)
+        return super().base_poses_of(group)
 
     def wheel_angles_of(self, group: "Group") -> Array:
         """Angles of the wheels (n, k) [rad]."""
@@ -152,7 +172,28 @@ class Simulation(TickedSimulation):
         if self._carts is not None:
             self._carts.drive(data, time, period)
 
+    def _owners(self) -> Sequence[Any]:
+        return [*super()._owners(), *self._framed]
+
     def _advance(self, steps: int) -> None:
+        if not self._framed:
+            self._integrate(steps)
+            return
+        now, end = self.step, self.step + steps
+        while now < end:
+            stop = end
+            for drive in self._framed:
+                # first frame not before now; told by the step alone, no snapshot need know it
+                frame = math.floor((now - 1 + 1e-6) * self.timestep / drive.frame) + 1
+                due = self.steps_until(frame * drive.frame)
+                if due == now:
+                    drive.servo(self.data, now * self.timestep)
+                    due = self.steps_until((frame + 1) * drive.frame)
+                stop = min(stop, due)
+            self._integrate(stop - now)
+            now = stop
+
+    def _integrate(self, steps: int) -> None:
         model, data = self.model, self.data
         if not self._step_watchers:
             mujoco.mj_step(model, data, steps)

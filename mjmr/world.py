@@ -97,6 +97,7 @@ class World:
         wall_height: float = 0.1,
         floor: str = "carpet",
         lighting: str = "even",
+        overlap: bool = False,
     ):
         """Declare an empty world.
 
@@ -107,6 +108,7 @@ class World:
             floor: One of ``FLOORS``; carpet carries field lines when there is a field.
             lighting: One of ``LIGHTINGS``; uneven: a lamp near the lower left corner, which makes
                 that side of the floor about twice as bright as the other.
+            overlap: Whether robots may start inside each other, which contact then drives apart.
 
         Raises:
             InvalidInputError: Bounds without area.
@@ -119,7 +121,7 @@ class World:
             raise UnknownNameError("floor", floor, FLOORS)
         if lighting not in LIGHTINGS:
             raise UnknownNameError("lighting", lighting, LIGHTINGS)
-        self.floor, self.lighting = floor, lighting
+        self.floor, self.lighting, self.overlap = floor, lighting, overlap
         self.props: list[Box | Ball | Cart] = []
         self.groups: list[Group] = []
         self.sensors: dict[str, Sensor] = {}
@@ -283,7 +285,10 @@ class World:
         low, high = self.bounds[:2] + r, self.bounds[2:] - r
         outside = ((group.start[:, :2] < low) | (group.start[:, :2] > high)).any(axis=1)
         if outside.any():
-            names = ", ".join(f"{group.name}{i}" for i in np.flatnonzero(outside))
+            beyond = np.maximum(low - group.start[:, :2], group.start[:, :2] - high).max(axis=1)
+            names = ", ".join(
+                f"{group.names[i]} by {1e3 * beyond[i]:.0f} mm" for i in np.flatnonzero(outside)
+            )
             raise InvalidInputError(
                 f"these robots start outside the walls or touch them: {names}; centres must lie "
                 f"within x {low[0]:g} to {high[0]:g} and y {low[1]:g} to {high[1]:g} m"

@@ -51,7 +51,9 @@ def build(condition: Mapping[str, Any], seed: int) -> tuple[World, Group, Scene,
     elif condition["scene"] != "overlap":
         starts = starts + Streams(seed).generator("starts").uniform(-_SPREAD, _SPREAD, starts.shape)
     lighting = "uneven" if condition["sensing"] == "vision" else "even"
-    world = World.rectangle(4.9, 3.8, border=0.30, lighting=lighting)
+    world = World.rectangle(
+        4.9, 3.8, border=0.30, lighting=lighting, overlap=condition["scene"] == "overlap"
+    )
     for x, y, length, width in place.boxes:
         world.add_box(x, y, length, width)
     for k, (x, y, yaw, length, width, travel, speed) in enumerate(place.carts):

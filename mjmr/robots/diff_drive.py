@@ -80,6 +80,10 @@ class DiffDrive:
         """Poses (n, 3) of the middle of the axle, world frame."""
         return free_poses(data.qpos, self._qpos)
 
+    def base_poses(self, data: "mujoco.MjData") -> Array:
+        """Poses of the bases (n, 7): position, quaternion."""
+        return data.qpos[self._qpos]
+
     def twists(self, data: "mujoco.MjData") -> Array:
         """Twists (n, 3), body frame."""
         return free_twists(data.qpos, data.qvel, self._qpos, self._qvel)

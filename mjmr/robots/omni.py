@@ -89,6 +89,10 @@ class OmniDrive:
         """Poses (n, 3), world frame; yaw is the heading of the body's x axis in the plane."""
         return free_poses(data.qpos, self._qpos)
 
+    def base_poses(self, data: "mujoco.MjData") -> Array:
+        """Poses of the bases (n, 7): position, quaternion."""
+        return data.qpos[self._qpos]
+
     def twists(self, data: "mujoco.MjData") -> Array:
         """Twists (n, 3), body frame: velocity of the point on the floor below the centre."""
         return free_twists(data.qpos, data.qvel, self._qpos, self._qvel)

@@ -34,6 +34,8 @@ class Pioneer2DX(Platform):
     """
 
     name = "pioneer2dx"
+    title = "ActivMedia Pioneer 2-DX"
+    grade = "B"
     command_names = ("forward", "turn")
     radius = 0.291
     height = 0.22

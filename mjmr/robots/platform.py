@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +52,42 @@ class Drive(Protocol):
         ...
 
 
+@runtime_checkable
+class TiltedDrive(Protocol):
+    """What a drive has besides if its robots can tilt or leave the floor."""
+
+    def base_poses(self, data: "mujoco.MjData") -> Array:
+        """Poses of the base bodies (n, 7), world frame: position [m], quaternion (w, x, y, z)."""
+        ...
+
+
+@runtime_checkable
+class FramedDrive(Protocol):
+    """What a drive has besides if its firmware runs at a frame rate of its own.
+
+    Attributes:
+        frame: Between two calls of :meth:`servo` [s].
+    """
+
+    frame: float
+
+    def servo(self, data: "mujoco.MjData", time: float) -> None:
+        """Set the actuators for one frame, which begins at ``time`` [s].
+
+        Called at every ``k * frame``, or the first physics step after it; at the start of a control
+        period after ``ramp``, which only has to store what it was given.
+        """
+        ...
+
+    def state(self) -> Any:
+        """What the firmware remembers, for snapshots; a copy."""
+        ...
+
+    def set_state(self, state: Any) -> None:
+        """Put back what :meth:`state` returned."""
+        ...
+
+
 class Platform(ABC):
     """A kind of robot.
 
@@ -61,6 +97,8 @@ class Platform(ABC):
 
     Attributes:
         name: Used for body names: ``soccer_bot0/base``.
+        title: Maker and product.
+        grade: Of the model against its source, A, B or C; see the README beside the model.
         command_names: Of the columns of a command, in order.
         radius: Of the smallest upright cylinder around the body [m].
         height: Of the same cylinder [m].
@@ -71,6 +109,8 @@ class Platform(ABC):
     """
 
     name: str
+    title: str
+    grade: str
     command_names: tuple[str, ...] = ("forward", "left", "turn")
     radius: float
     height: float

@@ -34,6 +34,8 @@ class SoccerBot(Platform):
     """
 
     name = "soccer_bot"
+    title = "RoboCup F180 soccer robot"
+    grade = "C"
     radius = 0.090
     height = 0.150
     max_twist = (3.0, 12.0)
