@@ -5,7 +5,7 @@ robots that have none. At run time a closed form is some 500 times faster.
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -68,17 +68,17 @@ def legs_by_mink(
     for k, points in enumerate(targets):
         for task, point in zip(tasks, points, strict=True):
             task.set_target(mink.SE3.from_translation(point))
+        residual = _residual(body, feet, points)
         for _ in range(_ITERATIONS):
-            # mink raises nothing when a target is out of reach
-            error = np.array([body.data.site(foot).xpos for foot in feet]) - points
-            residual = np.linalg.norm(error, axis=1)
             if residual.max() < tolerance:
                 break
             step = mink.solve_ik(
                 body, tasks, 1.0, "daqp", damping=1e-9, limits=limits, constraints=[held]
             )
             body.integrate_inplace(step, 1.0)
-        else:
+            residual = _residual(body, feet, points)
+        # mink raises nothing when a target is out of reach
+        if residual.max() >= tolerance:
             worst = int(residual.argmax())
             raise InvalidInputError(
                 f"foot {feet[worst]} stays {1e3 * residual[worst]:.2g} mm from point {k} of its "
@@ -86,3 +86,9 @@ def legs_by_mink(
             )
         found[k] = body.q[angles]
     return found
+
+
+def _residual(body: Any, feet: Sequence[str], points: Array) -> Array:
+    return np.linalg.norm(
+        [body.data.site(f).xpos - p for f, p in zip(feet, points, strict=True)], axis=1
+    )
