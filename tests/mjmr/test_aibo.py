@@ -266,25 +266,22 @@ def test_an_engine_that_gives_nonsense_is_refused(wanted, words):
     world, _ = aibos([[0, 0, 0]], platform)
     simulation = Simulation(world, control_period=PERIOD)
     servos(simulation, world.groups[0])._motion.targets = lambda *_: wanted
+    ticks = simulation.ticks(1.0)
+    next(ticks)
     with pytest.raises(InvalidInputError, match=words):
-        next(iter_after_one(simulation))
+        next(ticks)
     engine = Nodder()
     engine.command_limits = np.array([[0.1, 0.7]])
     with pytest.raises(InvalidInputError, match="command_limits of Nodder"):
         AiboERS7(engine)
 
 
-def iter_after_one(simulation):
-    ticks = simulation.ticks(1.0)
-    next(ticks)
-    yield next(ticks)
-
-
 def test_a_legged_robot_has_no_kinematic_run():
-    world, robots = aibos([[0, 0, 0]])
-    simulation = KinematicSimulation(world)
+    world, _ = aibos([[0, 0, 0]])
+    ticks = KinematicSimulation(world).ticks(1.0)
+    next(ticks)
     with pytest.raises(InvalidInputError, match="has legs"):
-        next(iter_after_one(simulation))
+        next(ticks)
 
 
 @pytest.mark.parametrize("engine", [False, True])
