@@ -58,6 +58,11 @@ class Bound:
             return HOLDS
         return INCONCLUSIVE if self._touches(low, high) else FAILS
 
+    def margin(self, value: float) -> float:
+        """How far inside the bound a value lies; negative outside."""
+        low, high = self._allowed()
+        return min(value - low, high - value)
+
     def _allowed(self) -> tuple[float, float]:
         if isinstance(self.value, tuple):
             return self.value

@@ -14,7 +14,7 @@ from mjmr.errors import InvalidInputError, SimulationDivergedError
 from mjmr.guard import plausible
 from mjmr.last_second import LastSecond
 from mjmr.loop import Snapshot, TickedSimulation
-from mjmr.robots.platform import FramedDrive, TiltedDrive
+from mjmr.robots.platform import Drive, FramedDrive, TiltedDrive
 from mjmr.start_check import check_start
 
 if TYPE_CHECKING:
@@ -112,6 +112,10 @@ class Simulation(TickedSimulation):
         self.last_second = LastSecond(self.model, self.data, self.control_period)
         self.last_second.keep(0.0)
         self._bind()
+
+    def drive_of(self, group: "Group") -> Drive:
+        """The actuators of a group's robots in this simulation; for meters, not for controllers."""
+        return self._drives[id(group)]
 
     def poses_of(self, group: "Group") -> Array:
         """True poses (n, 3)."""

@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 Metrics = dict[str, float | int | bool]
 Test = Callable[[Mapping[str, Any], int], Metrics]
 ALL = ("quick", "standard", "full")
+SHORT = {"pioneer2dx": "pioneer", "aibo_ers7": "aibo", "tamiya_txt1": "txt1"}
 LARGE = ("standard", "full")
 
 
@@ -96,23 +97,24 @@ def hall(half: float = 8.0, **options: Any) -> World:
     return World(bounds=[-half, -half, half, half], wall_height=0.5, floor="concrete", **options)
 
 
-def largest(metric: str) -> Callable[[Table], Evidence]:
-    """The largest value of a metric over all trials."""
+def worst(values: Sequence[float], bound: Bound, n: int) -> Evidence:
+    """Of several values that must all satisfy a bound, the one that is nearest to not doing so."""
+    found = min(values, key=bound.margin)
+    why = f"worst of {min(values):.4g} to {max(values):.4g}" if len(values) > 1 else ""
+    return Evidence(float(found), n=n, why=why)
+
+
+def every(metric: str, bound: Bound) -> Callable[[Table], Evidence]:
+    """A metric that must satisfy ``bound`` in every trial: its worst value."""
+    return lambda table: worst([float(v) for v in table.values(metric)], bound, table.finished)
+
+
+def means(metric: str, bound: Bound) -> Callable[[Table], Evidence]:
+    """A metric whose mean must satisfy ``bound`` under every condition: its worst mean."""
 
     def evaluate(table: Table) -> Evidence:
-        values = table.values(metric)
-        return Evidence(float(values.max()), n=len(values))
-
-    return evaluate
-
-
-def every(metric: str) -> Callable[[Table], Evidence]:
-    """The middle of a metric's range over all trials; the whole range must satisfy the bound."""
-
-    def evaluate(table: Table) -> Evidence:
-        values = table.values(metric)
-        low, high = float(values.min()), float(values.max())
-        return Evidence(float(np.median(values)), (low, high), len(values), why="range of trials")
+        found = [float(table.where(**c).values(metric).mean()) for c in table.conditions]
+        return worst(found, bound, table.finished)
 
     return evaluate
 
@@ -151,17 +153,19 @@ def sheet(
     text: str,
     how: str,
     bound: Bound,
-    evaluate: Callable[[Table], Evidence],
+    evaluate: Callable[[Table], Evidence] | str,
     *,
     published: str = "no number",
     unit: str = "",
     sizes: tuple[str, ...] = ALL,
     **needs: Any,
 ) -> Claim:
-    """A line of a platform's sheet, as a claim on the trials of one test."""
-    short = platform.split("_")[-1] if platform != "aibo_ers7" else "aibo"
+    """A line of a platform's sheet, as a claim on the trials of one test.
+
+    ``evaluate`` may be a metric's name: then :func:`every` trial must satisfy the bound.
+    """
     return Claim(
-        id=f"{short}-{name}",
+        id=f"{SHORT.get(platform, platform)}-{name}",
         text=text,
         how=how,
         bound=bound,
@@ -169,5 +173,5 @@ def sheet(
         unit=unit,
         sizes=sizes,
         needs={"platform": platform, "test": test, **needs},
-        evaluate=evaluate,
+        evaluate=every(evaluate, bound) if isinstance(evaluate, str) else evaluate,
     )

@@ -11,9 +11,7 @@ from experiments.proving_ground.course import (
     Course,
     Metrics,
     apart,
-    every,
     hall,
-    largest,
     profile,
     sheet,
 )
@@ -156,7 +154,7 @@ def claims() -> list[Claim]:
     ):
         found.append(
             sheet(NAME, test, name, "the base does what it is told", f"{how}, {exact}",
-                  Bound("<=", 0.3), largest(metric), unit="%")
+                  Bound("<=", 0.3), metric, unit="%")
         )  # fmt: skip
         found.append(
             sheet(NAME, test, f"{name}-timestep", "the same at every timestep",
@@ -165,17 +163,17 @@ def claims() -> list[Claim]:
         )  # fmt: skip
     return [
         *found,
-        sheet(NAME, "stop", "top-speed", "up to 1.6 m/s", "fastest, every timestep",
-              Bound("==", 1.6, 0.008), every("top_speed"), published="1.6 m/s", unit="m/s"),
+        sheet(NAME, "stop", "top-speed", "up to 1.6 m/s", "fastest at 2 and 5 ms",
+              Bound("==", 1.6, 0.008), "top_speed", published="1.6 m/s", unit="m/s"),
         sheet(NAME, "stop", "stop-tilt", "an emergency stop from full speed keeps it upright",
               "largest tilt from 1.6 m/s to rest, every timestep", Bound("<", 3.0),
-              largest("tilt_deg"), unit="deg"),
+              "tilt_deg", unit="deg"),
         sheet(NAME, "stop", "stop-stops", "an emergency stop ends in rest",
-              "speed left 2.5 s later", Bound("<=", 0.01), largest("left_speed"), unit="m/s"),
+              "speed left 2.5 s later", Bound("<=", 0.01), "left_speed", unit="m/s"),
         sheet(NAME, "crowd", "crowd-tipped", "nobody tips in a crowd",
               "50 robots, 30 boxes, 60 s, forward or reversed every 5 s, 5 and 10 ms, 3 worlds; "
-              "trials with a tilt over 30 degrees", Bound("<=", 0.0), largest("tipped"),
+              "trials with a tilt over 30 degrees", Bound("<=", 0.0), "tipped",
               sizes=LARGE),
         sheet(NAME, "crowd", "crowd-tilt", "nobody tips in a crowd", "the same, largest tilt",
-              Bound("<", 5.0), largest("tilt_deg"), unit="deg", sizes=LARGE),
+              Bound("<", 5.0), "tilt_deg", unit="deg", sizes=LARGE),
     ]  # fmt: skip

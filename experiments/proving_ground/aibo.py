@@ -1,0 +1,257 @@
+"""The AIBO ERS-7: walking in every direction, getting up, kicking, and its ball."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from mjmr.sensors.compass import Compass
+
+from experiments.proving_ground.aibo_trials import get_up, kick, roll
+from experiments.proving_ground.course import (
+    LARGE,
+    Course,
+    Metrics,
+    apart,
+    hall,
+    means,
+    sheet,
+)
+from mjmr.claims import Bound, Claim, Evidence, Table
+from mjmr.robots.aibo_ers7 import AiboERS7
+from mjmr.sensors.localizer import Localizer
+from mjmr.simulation import Simulation
+
+NAME = "aibo_ers7"
+PERIOD = 0.032
+# forward, left [m/s], turn [rad/s]: the largest commands of each kind, and a slower walk
+COMMANDS = {
+    "forward": (0.42, 0.0, 0.0),
+    "slow": (0.30, 0.0, 0.0),
+    "backward": (-0.25, 0.0, 0.0),
+    "left": (0.0, 0.185, 0.0),
+    "right": (0.0, -0.185, 0.0),
+    "turn-left": (0.0, 0.0, 2.8),
+    "turn-right": (0.0, 0.0, -2.8),
+}
+_START, _MEASURED = 2.0, 6.0  # s
+
+
+def floor_friction(world: Any, friction: float) -> None:
+    """Give the floor this coefficient of sliding friction; paws take the greater of two."""
+
+    def change(spec: Any) -> None:
+        spec.geom("floor").friction[0] = friction
+
+    world.edit(change)
+
+
+def _dog(condition: Mapping[str, Any], start: Any) -> tuple[Any, Any]:
+    from controllers.legged import AiboMotion
+
+    world = hall(4.0)
+    floor_friction(world, condition["friction"])
+    return world, world.add_group(AiboERS7(AiboMotion()), [start])
+
+
+def walk(condition: Mapping[str, Any], seed: int) -> Metrics:
+    """Obey one command for 8 s; what is measured leaves the first 2 s out."""
+    asked = np.array(COMMANDS[condition["variant"]])
+    world, group = _dog(condition, (0.0, 0.0, 0.0))
+    simulation = Simulation(
+        world, seed=seed, control_period=PERIOD, dt_max=condition["dt_ms"] / 1000.0
+    )
+    course = Course(simulation, group)
+    drive = simulation.drive_of(group)
+    rates: list[np.ndarray] = []
+
+    def measure() -> None:
+        if simulation.time > _START:
+            rates.append(np.abs(drive.joint_rates(simulation.data)) / AiboERS7.joint_rates)
+
+    simulation.watch_steps(measure)
+    command = np.zeros(group.command.shape[1])
+    command[:3] = asked
+    ticks = round((_START + _MEASURED) / PERIOD)
+    log = course.drive(np.tile(command, (ticks, 1))).log
+    late = log.times > _START
+    mean = log.twists[late, 0].mean(axis=0)
+    yaw, times = log.yaw[late, 0], log.times[late]
+    legs = np.array(rates)[:, 0, :12]
+    return {
+        "forward_mm_s": 1000 * float(mean[0]),
+        "left_mm_s": 1000 * float(mean[1]),
+        "turn_rad_s": float((yaw[-1] - yaw[0]) / (times[-1] - times[0])),
+        "rate_p99": float(np.percentile(legs, 99)),
+        "rate_max": float(legs.max()),
+        "tilt_deg": float(np.degrees(log.tilt)),
+    }
+
+
+def straight(condition: Mapping[str, Any], seed: int) -> Metrics:
+    """Walk 3 m with the heading held by a compass."""
+    from controllers.legged import HeadingLoop
+
+    world, group = _dog(condition, (-2.0, 0.0, 0.0))
+    group.mount(Compass(rate=1 / PERIOD, noise=np.radians(1.0)))
+    group.mount(Localizer(rate=1 / PERIOD))
+    simulation = Simulation(
+        world, seed=seed, control_period=PERIOD, dt_max=condition["dt_ms"] / 1000.0
+    )
+    course = Course(simulation, group)
+    heading = HeadingLoop(goal=np.zeros(1))
+    command = np.zeros(group.command.shape)
+    for _ in simulation.ticks(14.0):
+        # where it is decides when the course ends, not how it walks
+        if group.localizer.read()[0, 0] > 1.0:
+            break
+        command[:, 0] = 0.30
+        command[:, 2] = heading.step(group.compass.read())
+        group.drive(command)
+    pose = course.log.poses[-1, 0]
+    return {
+        "way_m": float(pose[0] + 2.0),
+        "lateral_mm": 1000 * abs(float(pose[1])),
+        "heading_deg": abs(float(np.degrees(pose[2]))),
+    }
+
+
+TESTS = {"walk": walk, "straight": straight, "get-up": get_up, "kick": kick, "roll": roll}
+
+
+def _least_share(metric: str, at_least: float) -> Callable[[Table], Evidence]:
+    """The smallest share, over friction and timestep, of trials with a metric above a value."""
+
+    def evaluate(table: Table) -> Evidence:
+        shares = [
+            (float(np.mean(table.where(**c).values(metric) > at_least)), c)
+            for c in table.conditions
+        ]
+        worst, condition = min(shares, key=lambda s: s[0])
+        why = f"worst at friction {condition['friction']:g}, {condition['dt_ms']:g} ms"
+        return Evidence(worst, n=table.finished, why=why)
+
+    return evaluate
+
+
+def _of_deviations(metric: str) -> Callable[[Table], Evidence]:
+    """The largest deviation of a metric, over friction and timestep."""
+
+    def evaluate(table: Table) -> Evidence:
+        spread = [float(table.where(**c).values(metric).std(ddof=1)) for c in table.conditions]
+        return Evidence(max(spread), n=table.finished)
+
+    return evaluate
+
+
+def _in_time(seconds: float) -> Callable[[Table], Evidence]:
+    """The smallest share, over friction and timestep, of robots that stand within ``seconds``."""
+
+    def evaluate(table: Table) -> Evidence:
+        shares = []
+        for condition in table.conditions:
+            rows = table.where(**condition)
+            shares.append(np.mean(rows.values("up") & (rows.values("seconds") <= seconds)))
+        return Evidence(float(min(shares)), n=table.finished)
+
+    return evaluate
+
+
+_WHERE = "friction 0.6 and 1.0, 2 and 4 ms, self-collision on"
+
+
+def _walking() -> list[Claim]:
+    real = "rUNSWift 2005: 349 mm/s, 171 mm/s, 2.8 rad/s"
+    found = []
+    for variant, name, metric, bound, published in (
+        ("forward", "forward", "forward_mm_s", Bound.within(350, 430), "349 mm/s"),
+        ("slow", "forward-300", "forward_mm_s", Bound.within(270, 320), "no number"),
+        ("backward", "backward", "forward_mm_s", Bound("<=", -180), "no number"),
+        ("left", "left", "left_mm_s", Bound.within(160, 200), "171 mm/s"),
+        ("right", "right", "left_mm_s", Bound.within(-200, -160), "171 mm/s"),
+        ("turn-left", "turn-left", "turn_rad_s", Bound.within(2.3, 3.0), "2.8 rad/s"),
+        ("turn-right", "turn-right", "turn_rad_s", Bound.within(-3.0, -2.3), "2.8 rad/s"),
+    ):
+        unit = "rad/s" if metric.startswith("turn") else "mm/s"
+        found.append(
+            sheet(NAME, "walk", f"walk-{name}", f"walks as the real one ({real})",
+                  f"mean over 6 s at command {COMMANDS[variant]}, {_WHERE}", bound,
+                  metric, unit=unit, published=published, sizes=LARGE, variant=variant)
+        )  # fmt: skip
+    for pair, metric in ((("left", "right"), "left_mm_s"), (("turn-left", "turn-right"),
+                         "turn_rad_s")):  # fmt: skip
+        found.append(
+            sheet(NAME, "walk", f"walk-{pair[0]}-and-right",
+                  "left and right are equal", f"difference / mean, largest over {_WHERE}",
+                  Bound("<=", 0.05), apart(metric, "variant", relative=True, absolute=True),
+                  sizes=LARGE, variant=pair)
+        )  # fmt: skip
+    for metric, kinds in (
+        ("forward_mm_s", ("forward", "slow", "backward")),
+        ("left_mm_s", ("left", "right")),
+        ("turn_rad_s", ("turn-left", "turn-right")),
+    ):
+        found.append(
+            sheet(NAME, "walk", f"walk-timestep-{metric.split('_')[0]}",
+                  "the same at every timestep", "difference at 2 and 4 ms / mean, largest",
+                  Bound("<=", 0.05), apart(metric, "dt_ms", relative=True), sizes=LARGE,
+                  variant=kinds)
+        )  # fmt: skip
+    return [
+        *found,
+        sheet(NAME, "walk", "walk-rates", "servos turn no faster than the real ones",
+              f"speed of leg joints / limit, 99th percentile, largest over commands, {_WHERE}",
+              Bound("<=", 1.15), "rate_p99"),
+        sheet(NAME, "straight", "straight-heading", "walks 3 m straight with its heading held",
+              f"heading at the end, compass of 1 degree, largest over {_WHERE}",
+              Bound("<=", 5.0), "heading_deg", unit="deg"),
+        sheet(NAME, "straight", "straight-lateral", "walks 3 m straight with its heading held",
+              f"off the line at the end, largest over {_WHERE}", Bound("<=", 100.0),
+              "lateral_mm", unit="mm"),
+        sheet(NAME, "straight", "straight-way", "walks 3 m straight with its heading held",
+              f"way, smallest over {_WHERE}", Bound(">=", 2.95), "way_m", unit="m"),
+    ]  # fmt: skip
+
+
+def _acting() -> list[Claim]:
+    found = []
+    for variant, seconds, share in (("front", 3.0, 1.0), ("left", 6.0, 0.9), ("right", 6.0, 0.9),
+                                    ("back", 6.0, 0.9)):  # fmt: skip
+        found.append(
+            sheet(NAME, "get-up", f"up-from-{variant}", "gets up when it has fallen",
+                  f"share of random falls on the {variant} that stand within {seconds:g} s, "
+                  f"smallest over {_WHERE}", Bound(">=", share), _in_time(seconds), sizes=LARGE,
+                  variant=variant)
+        )  # fmt: skip
+    found += [
+        sheet(NAME, "roll", "ball-rolls", "the ball rolls some 3 m from 1 m/s",
+              "way from 1 m/s to rest, 2 and 4 ms", Bound.within(2.5, 4.0),
+              "distance_m", unit="m"),
+        sheet(NAME, "kick", "kick-forward-mean", "kicks the ball ahead",
+              f"mean way of the ball, smallest over {_WHERE}", Bound(">=", 2.0),
+              means("distance_m", Bound(">=", 2.0)), unit="m", sizes=LARGE, variant="forward"),
+        sheet(NAME, "kick", "kick-forward-share", "kicks the ball ahead",
+              f"share of balls that go 1.5 m, smallest over {_WHERE}", Bound(">=", 28 / 30),
+              _least_share("distance_m", 1.5), sizes=LARGE, variant="forward"),
+        sheet(NAME, "kick", "kick-forward-deviation", "kicks the ball ahead",
+              f"deviation of the ball's direction, largest over {_WHERE}", Bound("<=", 5.0),
+              _of_deviations("angle_deg"), unit="deg", sizes=LARGE, variant="forward"),
+    ]  # fmt: skip
+    for side, low, high in (("left", 80.0, 100.0), ("right", -100.0, -80.0)):
+        found += [
+            sheet(NAME, "kick", f"kick-{side}-mean", f"heads the ball to the {side}",
+                  f"mean way of the ball, smallest over {_WHERE}", Bound(">=", 1.6),
+                  means("distance_m", Bound(">=", 1.6)), unit="m", sizes=LARGE, variant=side),
+            sheet(NAME, "kick", f"kick-{side}-share", f"heads the ball to the {side}",
+                  f"share of balls that go 0.6 m, smallest over {_WHERE}", Bound(">=", 0.9),
+                  _least_share("distance_m", 0.6), sizes=LARGE, variant=side),
+            sheet(NAME, "kick", f"kick-{side}-direction", f"heads the ball to the {side}",
+                  f"mean direction of the ball, range over {_WHERE}", Bound.within(low, high),
+                  means("angle_deg", Bound.within(low, high)), unit="deg", sizes=LARGE,
+                  variant=side),
+        ]  # fmt: skip
+    return found
+
+
+def claims() -> list[Claim]:
+    """What the AIBO must do."""
+    return [*_walking(), *_acting()]

@@ -1,0 +1,113 @@
+"""The TXT-1 truck: circles against the bicycle model, the bound of its turn, and rolling over."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from experiments.proving_ground.course import (
+    Array,
+    Course,
+    Metrics,
+    hall,
+    sheet,
+)
+from mjmr.claims import Bound, Claim
+from mjmr.robots.tamiya_txt1 import TamiyaTXT1
+from mjmr.simulation import Simulation
+
+PERIOD = 0.1
+NAME = "tamiya_txt1"
+_OVER = np.radians(40.0)
+
+
+class _Faster(TamiyaTXT1):
+    """Without the speed controller's bound, which keeps the real one upright."""
+
+    max_speed = 6.0
+
+
+def _course(condition: Mapping[str, Any], platform: TamiyaTXT1) -> Course:
+    world = hall(12.0)
+    group = world.add_group(platform, [[0.0, -4.0, 0.0]])
+    dt = condition["dt_ms"] / 1000.0
+    return Course(Simulation(world, control_period=PERIOD, dt_max=dt), group)
+
+
+def circle(condition: Mapping[str, Any], seed: int) -> Metrics:
+    """Two rounds at a steering angle and a speed."""
+    platform = TamiyaTXT1(command="steering")
+    angle, speed = np.radians(condition["angle_deg"]), condition["speed"]
+    ideal = platform.wheelbase / np.tan(angle)
+    ticks = round(2 * 2 * np.pi * ideal / speed / PERIOD) + 50
+    commands = np.tile([speed, angle], (ticks, 1))
+    commands[:20, 0] = 0.0  # steer first
+    log = _course(condition, platform).drive(commands).log
+    radius = _radius(log.poses[ticks // 2 :, 0, :2])
+    return {
+        "radius_m": radius,
+        "error_pct": 100 * (radius / ideal - 1.0),
+        "tilt_deg": float(np.degrees(log.tilt)),
+    }
+
+
+def unicycle(condition: Mapping[str, Any], seed: int) -> Metrics:
+    """0.3 rad/s at 1 m/s from a standstill, or at speeds that change (variant ``changing``)."""
+    seconds = 60
+    commands = np.tile([1.0, 0.3], (round(seconds / PERIOD), 1))
+    if condition["variant"] == "changing":
+        speeds = np.repeat([0.5, 2.0, 0.7, 1.6, 0.0, 1.0], 100)
+        commands[: len(speeds), 0] = speeds
+    log = _course(condition, TamiyaTXT1()).drive(commands).log
+    window = round(0.5 / PERIOD)
+    yaw = log.yaw[:, 0]
+    rate = np.abs(yaw[window:] - yaw[:-window]) / (window * PERIOD)
+    return {
+        "radius_m": _radius(log.poses[len(commands) // 2 :, 0, :2]),
+        "largest_turn": float(rate.max()),
+        "top_speed": float(np.hypot(*log.twists[:, 0, :2].T).max()),
+    }
+
+
+def roll_over(condition: Mapping[str, Any], seed: int) -> Metrics:
+    """Ever faster at full lock, slowly, until it lies on its side."""
+    platform = _Faster(command="steering", acceleration=0.05)
+    course = _course(condition, platform)
+    commands = np.tile([5.0, platform.lock], (round(2.0 / PERIOD), 1))
+    speed = 0.0
+    for _ in range(60):
+        log = course.drive(commands).log
+        if log.tilt > _OVER:
+            break
+        speed = float(np.hypot(*log.twists[-1, 0, :2]))
+    return {"held_speed": speed, "rolled": bool(log.tilt > _OVER)}
+
+
+def _radius(points: Array) -> float:
+    """Radius of the circle through points (k, 2), least squares (Kasa 1976)."""
+    matrix = np.column_stack([points, np.ones(len(points))])
+    x, y, rest = np.linalg.lstsq(matrix, (points**2).sum(axis=1), rcond=None)[0]
+    return float(np.sqrt(rest + (x * x + y * y) / 4.0))
+
+
+TESTS = {"circle": circle, "unicycle": unicycle, "roll-over": roll_over}
+
+
+def claims() -> list[Claim]:
+    """What the truck must do."""
+    return [
+        sheet(NAME, "circle", "circle", "turns as the bicycle model says",
+              "radius / (wheelbase / tan steering) - 1 at 10, 20, 28 degrees and 0.5, 1, 2 m/s, "
+              "2 and 5 ms", Bound("==", 0.0, 2.0), "error_pct", unit="%"),
+        sheet(NAME, "unicycle", "unicycle-radius", "1 m/s at 0.3 rad/s", "radius of the circle, "
+              "2 and 5 ms", Bound.within(3.33 * 0.98, 3.33 * 1.02), "radius_m", unit="m",
+              published="3.33 m", variant="plain"),
+        sheet(NAME, "unicycle", "turn-bound", "turns at no more than 0.3 rad/s",
+              "largest mean yaw rate over 0.5 s, from rest and at speeds that change, 2 and 5 ms",
+              Bound("<=", 0.305), "largest_turn", unit="rad/s", published="0.3 rad/s"),
+        sheet(NAME, "unicycle", "top-speed", "at most 2 m/s", "fastest, at speeds that change",
+              Bound("<=", 2.02), "top_speed", unit="m/s", published="2 m/s", variant="changing"),
+        sheet(NAME, "roll-over", "roll-over", "stays upright at all its speeds",
+              "fastest it goes at full lock before it rolls over, 2 and 5 ms", Bound(">", 2.0),
+              "held_speed", unit="m/s"),
+    ]  # fmt: skip
