@@ -37,6 +37,7 @@ _WHERE = {
     "KinematicSimulation": "mjmr.kinematics",
     "Localizer": "mjmr.sensors.localizer",
     "MjmrError": "mjmr.errors",
+    "Nims": "mjmr.robots.nims",
     "Pioneer2DX": "mjmr.robots.pioneer2dx",
     "Recording": "mjmr.recording",
     "Simulation": "mjmr.simulation",
