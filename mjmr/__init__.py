@@ -30,6 +30,7 @@ def _choose_gl() -> None:
 _choose_gl()
 
 _WHERE = {
+    "CableTension": "mjmr.sensors.cable_tension",
     "Camera": "mjmr.sensors.camera",
     "Film": "mjmr.film",
     "Fault": "mjmr.faults",

@@ -114,6 +114,10 @@ class Simulation(TickedSimulation):
         self.last_second.keep(0.0)
         self._bind()
 
+    def drive_of(self, group: "Group") -> Any:
+        """The drive of a group, for sensors of what only some platforms have."""
+        return self._drives[id(group)]
+
     def poses_of(self, group: "Group") -> Array:
         """True poses (n, 3)."""
         return self._drives[id(group)].poses(self.data)

@@ -22,8 +22,9 @@ if TYPE_CHECKING:
 
 FRAME = 0.01  # of the firmware [s]
 _POSITION_GAIN = 8.0  # 1/s, of the loop around the velocity servos
-# of the stiffest mode in a timestep [rad]: semi-implicit Euler loses an undamped spring at 2
-_LARGEST_PHASE = 1.5
+# Of the carriage's stiffest mode, w dt. Explicit stiffness with implicit damping of a share z holds
+# while (w dt)^2 < 4 + 4 z w dt: to 2.34 with a tenth of critical, 2 without; failures are silent.
+_LARGEST_PHASE = 2.0
 JOINTS = ("along", "line")
 
 
@@ -130,8 +131,9 @@ class CableDrive(ABC):
         if off <= self.tolerance:
             return None
         return (
-            f"a cable model failed: carriage {worst} of its group is {1e3 * off:.0f} mm off the "
-            f"cable's curve, of which {1e3 * self.tolerance:.0f} are allowed"
+            f"carriage {worst} of its group is {1e3 * off:.0f} mm off its cable's curve, "
+            f"{1e3 * self.tolerance:.0f} are allowed: the cable's model failed, or something "
+            "holds the carriage"
         )
 
     def ramp(self, data: "mujoco.MjData", start: Array, target: Array, period: float) -> None:
@@ -232,11 +234,11 @@ class TendonDrive(CableDrive):
                 f"either side needs at most {1e3 * largest:.3g} ms; set dt_max, or take a softer "
                 "cable"
             )
-        # a package that rests on the floor, or is caught, lets the carriage rise or fall by this
+        # a package that lands on something lets the carriage rise by a third of this, and bounce
         rise = self._height - self._lowest
         soft = 2.0 * self._stiffness * (rise / math.hypot(self._half, rise)) ** 2
         soft += self.weight / rise
-        self.tolerance = 2.0 * self.package_mass * GRAVITY / soft
+        self.tolerance = 3.0 * self.package_mass * GRAVITY / soft
 
     def tensions(self, data: "mujoco.MjData") -> Array:
         """Tensions (n, 2) [N] of the cables."""

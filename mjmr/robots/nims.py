@@ -32,7 +32,7 @@ SIZES: dict[str, tuple[tuple[float, float, float, float], dict[str, Any]]] = {
         (70.0, 17.33, 3.5, 6.0),
         {
             "scale": 1.8, "carriage": 8.0, "package": 2.0, "supports": "trees", "foot": 2.2,
-            "post": 0.30, "rope": 0.012, "axial_stiffness": 4e5,
+            "post": 0.30, "rope": 0.015, "axial_stiffness": 4e5,
         },
     ),
 }  # fmt: skip
@@ -67,6 +67,8 @@ class Nims(Platform):
     title = "Networked Info-Mechanical System"
     grade = "C"
     command_names = ("travel", "winch")
+    radius = 0.19
+    height = 0.33
     max_twist = (1.0, 0.0)
     max_winch = 0.3
     winch_acceleration = 0.3
@@ -128,7 +130,7 @@ class Nims(Platform):
         self.cable = Cable(span=span, height=height, sag=sag)
         self.cable_model = cable
         scale = self._parts["scale"]
-        self.radius, self.height = 0.19 * scale, 0.33 * scale
+        self.radius, self.height = scale * Nims.radius, scale * Nims.height
         self.reach = span / 2 - self._parts["post"] - self.radius - 0.05
         self.winch_drop = _WINCH_DROP * scale
         lowest = height - sag - self.winch_drop - _PACKAGE_HALF * scale - _FLOOR_CLEARANCE
@@ -178,6 +180,12 @@ class Nims(Platform):
         """Poses (n, 3) of the carriages of rigs at ``poses``."""
         forward = np.column_stack([np.cos(poses[:, 2]), np.sin(poses[:, 2]), 0.0 * poses[:, 2]])
         return poses + self.along * forward
+
+    def heights(self, poses: Array, sites: Array) -> Array:
+        """Heights (n,) [m] of the cable where the carriages are."""
+        yaw = sites[:, 2]
+        x, y = (poses - sites)[:, :2].T
+        return self.cable.curve(x * np.cos(yaw) + y * np.sin(yaw))
 
     def check_site(self, world: "World", poses: Array, names: Sequence[str]) -> None:
         """Refuse supports whose feet are not inside the walls.

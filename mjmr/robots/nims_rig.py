@@ -11,7 +11,7 @@ from mjmr.assets import model_path
 from mjmr.robots.cable import Cable, swing_period
 
 _GEOM = mujoco.mjtGeom
-_PIECES = 48  # straight ones the drawn curve is made of
+_PIECES = 32  # straight ones the drawn curve is made of
 _BARK = [0.30, 0.22, 0.15, 1.0]
 _LEAVES = ([0.13, 0.30, 0.12, 1.0], [0.17, 0.36, 0.14, 1.0], [0.10, 0.25, 0.11, 1.0])
 
@@ -216,18 +216,24 @@ def _tree(towers: Any, rig: Rig, end: float) -> None:
         c, s = math.cos(a), math.sin(a)
         _drawn(towers, [x + 0.6 * post * c, 0.6 * post * s, 0.9 * post],
                [x + 2.1 * post * c, 2.1 * post * s, 0.02], 0.28 * post, rgba=_BARK)  # fmt: skip
-    # whorls of flat crowns, the lowest above the cable's end so that they hide nothing
-    layers = 7
-    for k in range(layers):
-        share = k / (layers - 1)
-        z = 1.10 * top + share * (crown - 1.10 * top)
-        wide = (1.0 - 0.86 * share) * 0.95 * rig.size.foot
-        thick = 0.075 * (crown - top) * (1.35 - 0.5 * share) + 0.15
-        _ball(towers, [x, 0, z], [wide, wide, 1.3 * thick], rgba=_LEAVES[k % 3])
-        for j in range(7):
-            a = 2.0 * math.pi * (j + 0.37 * k) / 7
-            tip = [x + 0.62 * wide * math.cos(a), 0.62 * wide * math.sin(a), z - 0.6 * thick]
-            _ball(towers, tip, [0.42 * wide, 0.42 * wide, 0.7 * thick], rgba=_LEAVES[(j + k) % 3])
+    # whorls of flat crossed boughs, the lowest above the cable's end so that they hide nothing
+    whorls = 9
+    for k in range(whorls):
+        share = k / (whorls - 1)
+        z = 1.09 * top + share * (crown - 1.09 * top)
+        wide = (1.0 - 0.88 * share) * 0.95 * rig.size.foot
+        thick = 0.040 * (crown - top) * (1.3 - 0.4 * share)
+        for j in range(3):
+            a = (2.0 * k + math.pi * j / 3) / 2.0
+            turn = [math.cos(a), 0.0, 0.0, math.sin(a)]
+            size = [wide * (1.0 - 0.08 * j), 0.55 * wide, thick * (1.0 + 0.3 * (j == 2))]
+            _shape(towers, _GEOM.mjGEOM_ELLIPSOID, [x, 0, z - 0.3 * thick * j], size, turn,
+                   {"rgba": _LEAVES[(j + k) % 3]})  # fmt: skip
+    # dead snags below
+    for k in range(5):
+        a, z = 2.4 * k + 0.4, (0.45 + 0.09 * k) * top
+        tip = [x + 3.2 * post * math.cos(a), 3.2 * post * math.sin(a), z + 0.15]
+        _drawn(towers, [x, 0, z], tip, 0.09 * post, rgba=_BARK)
     for dz in (-0.12, 0.12):
         _wheel(towers, [x, 0, top + dz], 0.80 * post, 0.03, [1, 0, 0, 0], material="line")
     _wheel(towers, [end + 0.25 * out * post, 0, top], 0.09, 0.03, material="brass")

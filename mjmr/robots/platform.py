@@ -139,6 +139,10 @@ class Platform(ABC):
         """Poses (n, 3) at which robots start that are put at ``poses``; by default the same."""
         return poses
 
+    def heights(self, poses: Array, sites: Array) -> Array:
+        """Heights (n,) [m] of the bases of robots put at ``sites`` (n, 3), for kinematic runs."""
+        return np.zeros(len(poses))
+
     def check_site(  # noqa: B027
         self, world: "World", poses: Array, names: Sequence[str]
     ) -> None:
