@@ -348,9 +348,7 @@ def _set_cables(
         x_next = x + 0.5 * (v + v_next) * FRAME
         for k in range(2):
             now = _lengths(x, v, stiffness, ahead, weight, half, height, lowest, bend, k)
-            then = _lengths(
-                x_next, v_next, stiffness, ahead, weight, half, height, lowest, bend, k
-            )
+            then = _lengths(x_next, v_next, stiffness, ahead, weight, half, height, lowest, bend, k)
             act[cable_act[i, k]] = now
             ctrl[cables[i, k]] = (then - now) / FRAME
         _set_winch(

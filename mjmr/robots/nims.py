@@ -155,9 +155,9 @@ class Nims(Platform):
         self.along, self._damping = float(along), float(swing_damping)
         self.package_mass = self._parts["package"]
         self.mass = self._parts["carriage"] + self.package_mass
-        if acceleration is None:
-            acceleration = self.max_twist[0] / self.swing_period(self.line)
-        bound = _positive("acceleration", acceleration, "m/s^2")
+        bound = self.max_twist[0] / self.swing_period(self.line)
+        if acceleration is not None:
+            bound = _positive("acceleration", acceleration, "m/s^2")
         self.limits = DriveLimits(
             max_speed=self.max_twist[0], acceleration=bound, deceleration=bound
         )
@@ -202,7 +202,8 @@ class Nims(Platform):
         low, high = world.bounds[:2] + foot, world.bounds[2:] - foot
         beyond = np.maximum(low - feet, feet - high).max(axis=(0, 2))
         if (beyond > 0).any():
-            told = ", ".join(f"{names[i]} by {beyond[i]:.2f} m" for i in np.flatnonzero(beyond > 0))
+            far = zip(names, beyond, strict=True)
+            told = ", ".join(f"{name} by {by:.2f} m" for name, by in far if by > 0)
             raise InvalidInputError(
                 f"these rigs' {self._parts['supports']} stand outside the walls or touch them: "
                 f"{told}; they are {self.cable.span:g} m apart and need {foot:g} m around them"

@@ -129,9 +129,7 @@ def _servo(actuator: Any, gain: float, limits: tuple[float, float]) -> None:
 def _curve(spec: mujoco.MjSpec, towers: Any, rig: Rig) -> None:
     """Height slaved to the place along the cable, and the cable drawn."""
     half = rig.cable.span / 2
-    tie = spec.add_equality(
-        name="curve", type=mujoco.mjtEq.mjEQ_JOINT, name1="lift", name2="along"
-    )
+    tie = spec.add_equality(name="curve", type=mujoco.mjtEq.mjEQ_JOINT, name1="lift", name2="along")
     tie.data[:5] = [0.0, 0.0, rig.cable.sag / half**2, 0.0, 0.0]
     tie.solref, tie.solimp = [0.02, 1.0], [0.999, 0.9999, 0.001, 0.5, 2.0]
     x = np.linspace(-half, half, _PIECES + 1)

@@ -53,7 +53,7 @@ class CableTension(Sensor):
             InvalidInputError: Another robot, or a simulation without forces.
         """
         simulation: Any = self._simulation
-        drive = simulation.drive_of(group) if hasattr(simulation, "drive_of") else None
+        drive: Any = simulation.drive_of(group) if hasattr(simulation, "drive_of") else None
         if not hasattr(drive, "tensions"):
             raise InvalidInputError(
                 f"{group.name} has no cable whose tension could be measured: that takes robots of "

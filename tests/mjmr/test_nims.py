@@ -85,7 +85,8 @@ def test_the_compiled_model_has_the_stated_numbers():
         assert 0.5 * platform.radius < reach < platform.radius
         stated = {
             "span": cable.span, "height of the cable's ends": cable.height, "sag": cable.sag,
-            "carriage's mass": carriage, "package's mass": package, "line at the start": platform.line,
+            "carriage's mass": carriage, "package's mass": package,
+            "line at the start": platform.line,
         }  # fmt: skip
         for name, value in stated.items():
             row = re.search(rf"^\| {name} \| ([\d.]+)[^|]* \| ([\d.]+)", text, re.MULTILINE)
@@ -226,15 +227,21 @@ def test_a_dead_carriage_brakes():
     assert np.diff(speed[300:400:10]).mean() / 0.1 == pytest.approx(-platform.braking, rel=0.1)
 
 
+def pulls_of(simulation, actuator):
+    """Forces of an actuator at every physics step to come."""
+    forces = []
+    simulation.watch_steps(lambda: forces.append(float(simulation.data.actuator_force[actuator])))
+    return forces
+
+
 def test_a_line_does_not_push():
     """The package lands on a box: the line goes slack, and the carriage is lighter."""
     for cable in ("curve", "tendon"):
         _, group, simulation = rig(
             cable=cable, change=lambda w: w.add_box(0.0, 0.0, 1.0, 1.0, height=0.5)
         )
-        forces = []
         winch = simulation.model.actuator("nims0/winch").id
-        simulation.watch_steps(lambda s=simulation, w=winch: forces.append(s.data.actuator_force[w]))
+        forces = pulls_of(simulation, winch)
         for _ in simulation.ticks(9.0):
             group.drive([[0.0, 0.3]])
         assert max(forces) <= 0.0
@@ -342,9 +349,7 @@ def test_rigs_stand_where_they_are_put(kind):
     np.testing.assert_allclose(way[:, 0], expected, atol=0.01)
     np.testing.assert_allclose(way[:, 1], [0.493, -0.251], atol=0.01)
     moved = simulation.poses_of(group)
-    np.testing.assert_allclose(
-        moved[:, :2] - sites[:, :2], heading * (way[:, :1] - 1.0), atol=2e-3
-    )
+    np.testing.assert_allclose(moved[:, :2] - sites[:, :2], heading * (way[:, :1] - 1.0), atol=2e-3)
     np.testing.assert_allclose(moved[:, 2], [0.4, np.pi])
     along = ((moved - sites)[:, :2] * heading).sum(axis=1)
     np.testing.assert_allclose(
