@@ -91,14 +91,14 @@ class KinematicSimulation(TickedSimulation):
         self._rate = (self._target - self._twist) / period
         # what wheels count, which is not the twist of every robot
         self._pace = team.stack([p.pace_of(start) for p, (start, _) in pairs])
-        end = team.stack([p.pace_of(target) for p, (_, target) in pairs])
-        self._pace_rate = (end - self._pace) / period
+        self._pace_target = team.stack([p.pace_of(target) for p, (_, target) in pairs])
+        self._pace_rate = (self._pace_target - self._pace) / period
 
     def _advance(self, steps: int) -> None:
         dt = self.control_period if steps == self.substeps else steps * self.timestep
         end = self._target if steps == self.substeps else self._twist + self._rate * dt
         self._pose = integrate_ramp(self._pose, self._twist, end, dt)
-        pace = self._pace + self._pace_rate * dt
+        pace = self._pace_target if steps == self.substeps else self._pace + self._pace_rate * dt
         self._way = self._way + (self._pace + pace) * (dt / 2.0)
         self._twist, self._pace = end, pace
 

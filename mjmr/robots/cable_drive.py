@@ -36,6 +36,9 @@ class CableDrive(ABC):
 
     Attributes:
         frame: Of the firmware [s].
+        carriage_mass: [kg].
+        package_mass: [kg].
+        weight: Of both, line included [N].
         tolerance: Between the carriage and the curve [m]; more than this is a failed simulation.
     """
 
@@ -53,6 +56,7 @@ class CableDrive(ABC):
             radii: Of the counters' wheels, travel and winch [m].
             stop: Deceleration before the ends of travel and line (2,) [m/s^2].
         """
+        self._names = [p.removesuffix("/") for p in prefixes]
         self._half_step = model.opt.timestep / 2.0
         joints = [[model.joint(f"{p}{j}") for j in JOINTS] for p in prefixes]
         self._qpos = np.array([[j.qposadr[0] for j in row] for row in joints])
@@ -131,7 +135,7 @@ class CableDrive(ABC):
         if off <= self.tolerance:
             return None
         return (
-            f"carriage {worst} of its group is {1e3 * off:.0f} mm off its cable's curve, "
+            f"the carriage of {self._names[worst]} is {1e3 * off:.0f} mm off its cable's curve, "
             f"{1e3 * self.tolerance:.0f} are allowed: the cable's model failed, or something "
             "holds the carriage"
         )

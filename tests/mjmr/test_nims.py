@@ -259,7 +259,7 @@ def break_tie(spec):
 
 def test_a_carriage_off_its_curve_ends_the_trial():
     _, _, simulation = rig(change=lambda w: w.edit(break_tie))
-    with pytest.raises(SimulationDivergedError, match="carriage 0 of its group is .* mm off"):
+    with pytest.raises(SimulationDivergedError, match="carriage of nims0 is .* mm off"):
         for _ in simulation.ticks(1.0):
             pass
     assert simulation.diverged
