@@ -31,6 +31,7 @@ _choose_gl()
 
 _WHERE = {
     "AiboERS7": "mjmr.robots.aibo_ers7",
+    "CableTension": "mjmr.sensors.cable_tension",
     "Camera": "mjmr.sensors.camera",
     "Film": "mjmr.film",
     "Fault": "mjmr.faults",
@@ -38,6 +39,7 @@ _WHERE = {
     "KinematicSimulation": "mjmr.kinematics",
     "Localizer": "mjmr.sensors.localizer",
     "MjmrError": "mjmr.errors",
+    "Nims": "mjmr.robots.nims",
     "Pioneer2DX": "mjmr.robots.pioneer2dx",
     "Recording": "mjmr.recording",
     "Simulation": "mjmr.simulation",

@@ -173,6 +173,7 @@ class _Panel:
         data.qpos[:] = footage.positions[index]
         mujoco.mj_kinematics(model, data)
         mujoco.mj_camlight(model, data)
+        mujoco.mj_tendon(model, data)
         renderer = self._renderer
         image = renderer.picture(data, self._camera(index))
         view = renderer.view()

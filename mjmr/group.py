@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from mjmr.robots.platform import Platform
     from mjmr.sensors.base import Sensor
     from mjmr.sensors.localizer import Localizer
+    from mjmr.world import World
 
 Array = NDArray[np.float64]
 
@@ -27,6 +28,7 @@ class Group:
         n: Number of robots.
         platform: What they are.
         start: Start poses (n, 3) [m, m, rad], world frame.
+        sites: Where the robots were put (n, 3); other than ``start`` for anchored ones only.
         names: ``name0 ...``.
         faults: What goes wrong, and when.
         clamped: Commands scaled down to the platform's limits so far, shape (n,).
@@ -69,6 +71,8 @@ class Group:
             )
         if team not in TEAM_COLOURS:
             raise UnknownNameError("team", team, TEAM_COLOURS)
+        start.setflags(write=False)
+        self.sites, start = start, platform.starts(start)
         start.setflags(write=False)
         self.platform, self.start, self.n, self.name = platform, start, len(start), name
         self.team, self.first_number = team, first_number
@@ -219,10 +223,17 @@ class Group:
         for i in range(self.n):
             robot = self.platform.model(self.first_number + i, self.team)
             frame = spec.worldbody.add_frame()
+            if self.platform.anchored:
+                x, y, yaw = self.sites[i]
+                frame.pos, frame.quat = [x, y, 0], [np.cos(yaw / 2), 0, 0, np.sin(yaw / 2)]
             spec.attach(robot, prefix=f"{self.names[i]}/", frame=frame)
         for key, sensor in self.sensors.items():
             sensor.add_to(spec, self.prefixes, key)
         self.platform.finish(spec, self.prefixes)
+
+    def check_site(self, world: "World") -> None:
+        """Refuse a world in which the robots cannot stand; :meth:`World.add_group` calls this."""
+        self.platform.check_site(world, self.sites, self.names)
 
     @property
     def prefixes(self) -> list[str]:

@@ -47,6 +47,7 @@ class KinematicSimulation(TickedSimulation):
         self._pose = team.stack([g.start for g in team.groups]).copy()
         self._twist = np.zeros_like(self._pose)
         self._rate = np.zeros_like(self._pose)
+        self._pace = np.zeros_like(self._pose)
         self._way = np.zeros_like(self._pose)
         self._bind()
 
@@ -88,19 +89,24 @@ class KinematicSimulation(TickedSimulation):
         self._twist = team.stack([p.twist_of(start) for p, (start, _) in pairs])
         self._target = team.stack([p.twist_of(target) for p, (_, target) in pairs])
         self._rate = (self._target - self._twist) / period
+        # what wheels count, which is not the twist of every robot
+        self._pace = team.stack([p.pace_of(start) for p, (start, _) in pairs])
+        self._pace_target = team.stack([p.pace_of(target) for p, (_, target) in pairs])
+        self._pace_rate = (self._pace_target - self._pace) / period
 
     def _advance(self, steps: int) -> None:
         dt = self.control_period if steps == self.substeps else steps * self.timestep
         end = self._target if steps == self.substeps else self._twist + self._rate * dt
         self._pose = integrate_ramp(self._pose, self._twist, end, dt)
-        self._way = self._way + (self._twist + end) * (dt / 2.0)
-        self._twist = end
+        pace = self._pace_target if steps == self.substeps else self._pace + self._pace_rate * dt
+        self._way = self._way + (self._pace + pace) * (dt / 2.0)
+        self._twist, self._pace = end, pace
 
     def _end_period(self) -> None:
         """Nothing to check: finite commands move finite poses."""
 
     def _physics_state(self) -> Array:
-        return np.stack([self._pose, self._twist, self._way])
+        return np.stack([self._pose, self._twist, self._pace, self._way])
 
     def _set_physics_state(self, state: Array) -> None:
-        self._pose, self._twist, self._way = (part.copy() for part in state)
+        self._pose, self._twist, self._pace, self._way = (part.copy() for part in state)

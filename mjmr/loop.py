@@ -279,7 +279,8 @@ class TickedSimulation(ABC):
         """
         poses = self.poses_of(group)
         half, nil = poses[:, 2] / 2.0, np.zeros(len(poses))
-        return np.column_stack([poses[:, :2], nil, np.cos(half), nil, nil, np.sin(half)])
+        z = group.platform.heights(poses, group.sites)
+        return np.column_stack([poses[:, :2], z, np.cos(half), nil, nil, np.sin(half)])
 
     @abstractmethod
     def wheel_angles_of(self, group: "Group") -> Array:

@@ -14,7 +14,7 @@ from mjmr.errors import InvalidInputError, SimulationDivergedError
 from mjmr.guard import plausible
 from mjmr.last_second import LastSecond
 from mjmr.loop import Snapshot, TickedSimulation
-from mjmr.robots.platform import Drive, FramedDrive, TiltedDrive
+from mjmr.robots.platform import CheckedDrive, FramedDrive, TiltedDrive
 from mjmr.start_check import check_start
 
 if TYPE_CHECKING:
@@ -93,6 +93,7 @@ class Simulation(TickedSimulation):
                     f"a drive's frame of {drive.frame:g} s is shorter than a timestep of "
                     f"{self.timestep:g} s; set dt_max to at most the frame"
                 )
+        self._checks = [d.check for _, d in self._each if isinstance(d, CheckedDrive)]
         self._step_watchers: list[Callable[[], None]] = []
         bodies = [self.model.body(name).id for name, _ in world.movers]
         self._mover_ids = np.array(bodies, dtype=np.int64)
@@ -113,8 +114,8 @@ class Simulation(TickedSimulation):
         self.last_second.keep(0.0)
         self._bind()
 
-    def drive_of(self, group: "Group") -> Drive:
-        """The actuators of a group's robots in this simulation; for meters, not for controllers."""
+    def drive_of(self, group: "Group") -> Any:
+        """The actuators of a group's robots; for meters, and sensors only some platforms have."""
         return self._drives[id(group)]
 
     def poses_of(self, group: "Group") -> Array:
@@ -211,16 +212,23 @@ class Simulation(TickedSimulation):
         if not plausible(self._qpos, self._bounds, self._warning_counts, self._warnings):
             self.diverged = True
             raise self._divergence()
+        for check in self._checks:
+            wrong = check(self.data)
+            if wrong is not None:
+                self.diverged = True
+                raise self._divergence(wrong)
         self.last_second.keep(self.step * self.timestep)
         self._ticks_done += 1
         if self._ticks_done % 6 == 0:
             self._history.append(self.snapshot())
 
-    def _divergence(self) -> SimulationDivergedError:
+    def _divergence(self, wrong: str = "") -> SimulationDivergedError:
         data = self.data
         counts = data.warning.number
         names = [mujoco.mjtWarning(i).name for i in np.flatnonzero(counts)]
-        if names:
+        if wrong:
+            why = wrong
+        elif names:
             why = f"MuJoCo warned: {', '.join(names)}"
         elif not np.isfinite(data.qpos).all():
             why = "a position is not finite"

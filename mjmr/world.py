@@ -174,6 +174,7 @@ class World:
         options.setdefault("name", instance.name if not taken else f"{instance.name}_{taken}_")
         group = Group(instance, poses, **options)
         self._check_inside(group)
+        group.check_site(self)
         if any(g.name == group.name for g in self.groups):
             raise InvalidInputError(f"there is a group named {group.name!r} already")
         self.groups.append(group)

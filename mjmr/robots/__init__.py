@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from mjmr.errors import UnknownNameError
 from mjmr.robots.aibo_ers7 import AiboERS7
+from mjmr.robots.nims import Nims
 from mjmr.robots.pioneer2dx import Pioneer2DX
 from mjmr.robots.soccer_bot import SoccerBot
 
@@ -13,10 +14,11 @@ if TYPE_CHECKING:
 
 PLATFORMS = {
     "aibo_ers7": "mjmr.robots.aibo_ers7:AiboERS7",
+    "nims": "mjmr.robots.nims:Nims",
     "pioneer2dx": "mjmr.robots.pioneer2dx:Pioneer2DX",
     "soccer_bot": "mjmr.robots.soccer_bot:SoccerBot",
 }
-__all__ = ["PLATFORMS", "AiboERS7", "Pioneer2DX", "SoccerBot", "platform_class"]
+__all__ = ["PLATFORMS", "AiboERS7", "Nims", "Pioneer2DX", "SoccerBot", "platform_class"]
 
 
 def platform_class(name: str) -> "type[Platform]":

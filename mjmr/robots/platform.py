@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     import mujoco
 
     from mjmr.sensors.base import Sensor
+    from mjmr.world import World
 
 Array = NDArray[np.float64]
 FLOOR = "floor"  # name of every world's floor geom
@@ -88,6 +89,18 @@ class FramedDrive(Protocol):
         ...
 
 
+@runtime_checkable
+class CheckedDrive(Protocol):
+    """What a drive has besides if its model can fail without MuJoCo's noticing."""
+
+    def check(self, data: "mujoco.MjData") -> str | None:
+        """Why the state that a control period ended in is wrong, in one phrase; None if it isn't.
+
+        Called after every control period; what it returns ends the trial as diverged.
+        """
+        ...
+
+
 class Platform(ABC):
     """A kind of robot.
 
@@ -107,6 +120,8 @@ class Platform(ABC):
         braking: Deceleration of the robot's own emergency stop [m/s^2].
         limits: What its drive follows; measured, see the platform.
         wheels: Names of the wheels that encoders can count, in order.
+        anchored: Whether part of the robot is fixed in the world: its model is attached where it
+            was put, and the drive moves what can move. Others are attached at the origin.
     """
 
     name: str
@@ -120,6 +135,29 @@ class Platform(ABC):
     braking: float
     limits: DriveLimits
     wheels: tuple[str, ...] = ()
+    anchored: bool = False
+
+    def starts(self, poses: Array) -> Array:
+        """Poses (n, 3) at which robots start that are put at ``poses``; by default the same."""
+        return poses
+
+    def heights(self, poses: Array, sites: Array) -> Array:
+        """Heights (n,) [m] of the bases of robots put at ``sites`` (n, 3), for kinematic runs."""
+        return np.zeros(len(poses))
+
+    def check_site(  # noqa: B027
+        self, world: "World", poses: Array, names: Sequence[str]
+    ) -> None:
+        """Refuse a world in which robots put at ``poses`` (n, 3) cannot stand.
+
+        Called when they are added, after their starts were checked against the walls; by default
+        there is nothing more to check.
+
+        Args:
+            world: What they are added to.
+            poses: Where they are put.
+            names: Of the robots.
+        """
 
     @abstractmethod
     def model(self, number: int, team: str) -> "mujoco.MjSpec":
@@ -151,11 +189,15 @@ class Platform(ABC):
         """Twists (n, 3) that commands (n, c) ask for, body frame; may be the argument itself."""
         return command
 
+    def pace_of(self, command: Array) -> Array:
+        """Speeds (n, 3) that ``wheel_turns`` needs the integrals of; by default the twists."""
+        return self.twist_of(command)
+
     def wheel_turns(self, way: Array) -> Array:
         """Angles [rad] of ``wheels`` (n, k) by rolling without slip, for kinematic runs.
 
         Args:
-            way: Integrals of the twists (n, 3) [m, m, rad], body frame.
+            way: Integrals of :meth:`pace_of` (n, 3); of twists [m, m, rad], body frame.
         """
         return np.zeros((len(way), 0))
 

@@ -56,6 +56,7 @@ class Studio:
             data.qpos[:], data.mocap_pos[:], data.mocap_quat[:] = state
         mujoco.mj_kinematics(model, data)
         mujoco.mj_camlight(model, data)
+        mujoco.mj_tendon(model, data)
 
     def picture(self, modality: str, camera: int, width: int, height: int) -> NDArray[Any]:
         """Picture of the scene shown; see :class:`mjmr.sensors.camera.Camera` for its type."""
