@@ -6,6 +6,7 @@ from typing import Any
 
 from experiments.proving_ground.course import Metrics
 from mjmr.errors import UnknownNameError
+from mjmr.robots import PLATFORMS
 
 MODULES = {
     "pioneer2dx": "pioneer",
@@ -33,6 +34,10 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
         UnknownNameError: The platform has no such test; lists those it has.
     """
     tests = module(condition["platform"]).TESTS
+    if condition["platform"] in PLATFORMS:
+        from experiments.proving_ground.noise import noise
+
+        tests = {**tests, "noise": noise}
     if condition["test"] not in tests:
         raise UnknownNameError(f"test of {condition['platform']}", condition["test"], tests)
     return tests[condition["test"]](condition, seed)

@@ -1,0 +1,72 @@
+"""Every actuator driven by noise from a random start: nothing may warn, whatever is mounted."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import mujoco
+import numpy as np
+from scipy.stats import qmc
+
+from experiments.proving_ground.course import ALL, Metrics, hall, sheet
+from mjmr.claims import Bound, Claim
+from mjmr.randomness import Streams
+from mjmr.robots import platform_class
+from mjmr.sensors.bumper import Bumper
+from mjmr.sensors.compass import Compass
+from mjmr.sensors.imu import IMU
+from mjmr.sensors.lidar import Lidar
+from mjmr.sensors.localizer import Localizer
+from mjmr.simulation import Simulation
+
+SECONDS, HOLD = 1.0, 5  # steps a value is held
+
+
+def noise(condition: Mapping[str, Any], seed: int) -> Metrics:
+    """One second of Halton noise on all actuators, from a random pose beside a wall and a box."""
+    rng = Streams(seed).generator("start")
+    platform = platform_class(condition["platform"])()
+    world = hall(4.0)
+    world.add_box(1.5, 0.0, 0.4, 0.4, height=0.4)
+    pose = (0.0, 0.0, 0.0) if platform.anchored else rng.uniform([-3, -3, -np.pi], [0.5, 3, np.pi])
+    group = world.add_group(platform, [pose])
+    for sensor in (Lidar(position=(0.0, 0.0, 0.3)), Compass(), IMU(), Bumper(), Localizer()):
+        if sensor.name not in group.sensors:
+            group.mount(sensor)
+    simulation = Simulation(world, seed=seed, dt_max=condition["dt_ms"] / 1000.0)
+    model, data = simulation.model, simulation.data
+    count = round(SECONDS / simulation.timestep / HOLD)
+    halton = qmc.Halton(model.nu, scramble=True, rng=rng).random(count)
+    low, high = _ranges(model)
+    fastest = 0.0
+    for row in low + halton * (high - low):
+        data.ctrl[:] = row
+        mujoco.mj_step(model, data, HOLD)
+        fastest = max(fastest, float(np.abs(data.qvel).max()))
+    for sensor in group.sensors.values():
+        sensor.capture(simulation.step, simulation.time)
+        sensor.read()
+    return {
+        "warnings": int(data.warning.number.sum()),
+        "finite": bool(np.isfinite(data.qpos).all() and np.isfinite(data.qvel).all()),
+        "fastest": fastest,
+    }
+
+
+def _ranges(model: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Of every actuator; what has no range, a ramped speed, gets +-10 a second."""
+    limited = model.actuator_ctrllimited.astype(bool)
+    low = np.where(limited, model.actuator_ctrlrange[:, 0], -10.0)
+    high = np.where(limited, model.actuator_ctrlrange[:, 1], 10.0)
+    return low, high
+
+
+def claims(platform: str) -> list[Claim]:
+    """What every platform must survive."""
+    words = "survives whatever its actuators do"
+    how = "1 s of Halton noise on all actuators from random starts, sensors mounted"
+    return [
+        sheet(platform, "noise", "warnings", words, f"{how}; MuJoCo's warnings, most in a trial",
+              Bound("<=", 0.0), "warnings", sizes=ALL),
+        sheet(platform, "noise", "finite", words, f"{how}; whether every coordinate is finite",
+              Bound(">=", 1.0), "finite", sizes=ALL),
+    ]  # fmt: skip
