@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from mjmr.errors import UnknownNameError
 from mjmr.robots.pioneer2dx import Pioneer2DX
 from mjmr.robots.soccer_bot import SoccerBot
+from mjmr.robots.tamiya_txt1 import TamiyaTXT1
 
 if TYPE_CHECKING:
     from mjmr.robots.platform import Platform
@@ -13,8 +14,9 @@ if TYPE_CHECKING:
 PLATFORMS = {
     "pioneer2dx": "mjmr.robots.pioneer2dx:Pioneer2DX",
     "soccer_bot": "mjmr.robots.soccer_bot:SoccerBot",
+    "tamiya_txt1": "mjmr.robots.tamiya_txt1:TamiyaTXT1",
 }
-__all__ = ["PLATFORMS", "Pioneer2DX", "SoccerBot", "platform_class"]
+__all__ = ["PLATFORMS", "Pioneer2DX", "SoccerBot", "TamiyaTXT1", "platform_class"]
 
 
 def platform_class(name: str) -> "type[Platform]":
