@@ -159,10 +159,10 @@ class TamiyaTXT1(Platform):
         now = np.arctan2(self.wheelbase * current[:, 1], current[:, 0])
         wanted = np.arctan2(self.wheelbase * target[:, 1], faster)
         steering = now + np.clip(wanted - now, -swing, swing)
-        curvature = np.tan(steering) / self.wheelbase
-        allowed = self.max_turn / np.maximum(np.abs(curvature), 1e-300)
-        forward = np.minimum(forward, np.maximum(allowed, 0.0))
-        return np.column_stack([forward, forward * curvature])
+        # the wheels follow the servo late: what counts is the sharper of both ends of the period
+        sharpest = np.tan(np.maximum(np.abs(now), np.abs(steering)))
+        forward = np.minimum(forward, self.max_turn * self.wheelbase / np.maximum(sharpest, 1e-300))
+        return np.column_stack([forward, forward * np.tan(steering) / self.wheelbase])
 
     def brake(self, twist: Array, period: float) -> Array:
         """Next cycle's command (n, 2) of an emergency stop, which keeps the path's curvature."""
