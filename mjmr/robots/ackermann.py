@@ -79,9 +79,9 @@ class AckermannDrive:
 
         mass = total_mass(model, self._qvel[0])
         spin = sum(float(model.body_inertia[model.jnt_bodyid[j.id], 1]) for j in wheels[0])
-        rotor = float(model.tendon_armature[model.actuator_trnid[self._servo[0, 0], 0]])
+        rotors = sum(float(model.dof_armature[j.dofadr[0]]) for j in wheels[0])
         # a servo of gain k gives the torque t when its set point is t / k ahead
-        torque = mass * self.rolling_radius + (spin + rotor) / self.rolling_radius
+        torque = mass * self.rolling_radius + (spin + rotors) / self.rolling_radius
         self._ahead = torque / float(model.actuator_gainprm[self._servo[0, 0], 0])
 
     def place(self, data: "mujoco.MjData", poses: Array) -> None:
