@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mjmr.jit import njit
-from mjmr.robots.free_body import free_poses, free_twists, total_mass
+from mjmr.robots.free_body import free_poses, free_twists
 from mjmr.robots.platform import Array
 from mjmr.robots.rest import rest
 
@@ -77,7 +77,7 @@ class AckermannDrive:
         self.wheel_radius = float(model.geom_size[tread, 0])
         self.rolling_radius = (self.wheel_radius + float(hubs[:, 2].mean())) / 2.0
 
-        mass = total_mass(model, self._qvel[0])
+        mass = float(model.body_subtreemass[base])
         spin = sum(float(model.body_inertia[model.jnt_bodyid[j.id], 1]) for j in wheels[0])
         rotors = sum(float(model.dof_armature[j.dofadr[0]]) for j in wheels[0])
         # a servo of gain k gives the torque t when its set point is t / k ahead

@@ -28,10 +28,12 @@ class TamiyaTXT1(Platform):
     There are two sets of commands:
 
     - ``unicycle``: (forward [m/s], turn [rad/s]), 0 to 2 m/s and +-0.3 rad/s as published, and no
-      more than the steering's lock allows at that speed. The steering is what turns it at the
-      larger of the speed it has and the one it goes to, and speeding up waits where the steering
-      cannot be straightened as fast, so that the yaw rate never exceeds what was asked for.
+      more turn than the steering's lock allows at that speed. It steers for the larger of the speed
+      it has and the one it goes to, and speeding up waits for the steering, so that changing both
+      at once does not turn it faster than 0.3 rad/s. At rest it steers straight.
     - ``steering``: (forward [m/s], steering [rad], the bicycle model's), +-2 m/s and +-28 degrees.
+
+    Only set points enter: the base has no gyroscope in its loop.
 
     Attributes:
         command: Which of them.
@@ -46,14 +48,14 @@ class TamiyaTXT1(Platform):
     name = "tamiya_txt1"
     title = "Tamiya TXT-1, MARHES testbed"
     grade = "C"
-    radius = 0.445  # around the origin
+    radius = 0.43  # around the origin, to the corners of the front bumper
     height = 0.45
     braking = 3.0
     wheels = COUNTED
     wheelbase = 0.31
     track = 0.28
     wheel_radius = 0.0825
-    rolling_radius = 0.0825
+    rolling_radius = 0.08225
     lock = math.radians(28.0)
     steering_rate = math.radians(60.0)
     max_speed = 2.0
@@ -154,12 +156,12 @@ class TamiyaTXT1(Platform):
         if not self._unicycle:
             turned = np.clip(target[:, 1] - current[:, 1], -swing, swing)
             return np.column_stack([forward, current[:, 1] + turned])
-        # neither now nor at the speed it goes to may the yaw rate exceed the one asked for
+        # steered for the present speed alone, it would turn too fast as soon as it speeds up
         faster = np.maximum(target[:, 0], current[:, 0])
         now = np.arctan2(self.wheelbase * current[:, 1], current[:, 0])
         wanted = np.arctan2(self.wheelbase * target[:, 1], faster)
         steering = now + np.clip(wanted - now, -swing, swing)
-        # the wheels follow the servo late: what counts is the sharper of both ends of the period
+        # the wheels follow the servo late: what bounds the speed is the sharper end of the period
         sharpest = np.tan(np.maximum(np.abs(now), np.abs(steering)))
         forward = np.minimum(forward, self.max_turn * self.wheelbase / np.maximum(sharpest, 1e-300))
         return np.column_stack([forward, forward * np.tan(steering) / self.wheelbase])
