@@ -46,12 +46,13 @@ def rest(model: "mujoco.MjModel", base: int, freedoms: NDArray[np.int64]) -> Arr
     moved = np.zeros(len(freedoms))
     moved[0] = _START
     nudges = _NUDGE * np.eye(len(freedoms))
+    found = acceleration(moved)
     for _ in range(30):
-        found = acceleration(moved)
         if np.abs(found).max() < _STILL:
             return data.qpos.copy()
         slopes = [(acceleration(moved + nudge) - found) / _NUDGE for nudge in nudges]
         moved -= np.linalg.solve(np.transpose(slopes), found)
+        found = acceleration(moved)
     raise InvalidInputError(
         f"{model.body(base).name} does not stand still on its wheels: an acceleration of "
         f"{np.abs(found).max():g} is left"
