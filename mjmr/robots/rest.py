@@ -27,7 +27,7 @@ def rest(model: "mujoco.MjModel", base: int, freedoms: NDArray[np.int64]) -> Arr
             then its rotations, springs ...
 
     Raises:
-        InvalidInputError: It finds no rest: it tips, or a spring is at its end.
+        InvalidInputError: It finds no rest: the weight is not above the wheels.
     """
     import mujoco
 
@@ -51,11 +51,14 @@ def rest(model: "mujoco.MjModel", base: int, freedoms: NDArray[np.int64]) -> Arr
         if np.abs(found).max() < _STILL:
             return data.qpos.copy()
         slopes = [(acceleration(moved + nudge) - found) / _NUDGE for nudge in nudges]
-        moved -= np.linalg.solve(np.transpose(slopes), found)
+        try:
+            moved -= np.linalg.solve(np.transpose(slopes), found)
+        except np.linalg.LinAlgError:  # a wheel has left the floor
+            break
         found = acceleration(moved)
     raise InvalidInputError(
-        f"{model.body(base).name} does not stand still on its wheels: an acceleration of "
-        f"{np.abs(found).max():g} is left"
+        f"{model.body(base).name} does not stand still on its wheels (an acceleration of "
+        f"{np.abs(found).max():.2g} is left); its centre of mass must be above them"
     )
 
 

@@ -168,6 +168,16 @@ def test_it_starts_at_rest_and_stands_still():
     assert np.abs(twists).max() < 1e-5
 
 
+def test_a_truck_that_cannot_stand_is_refused():
+    def tail_heavy(spec):
+        spec.body(f"{NAME}base").ipos = [-0.5, 0.0, 0.18]
+
+    world, _ = trucks([[0.0, 0.0, 0.0]])
+    world.edit(tail_heavy)
+    with pytest.raises(InvalidInputError, match="tamiya_txt10/base does not stand still"):
+        Simulation(world)
+
+
 @pytest.mark.parametrize("dt_max", TIMESTEPS)
 @pytest.mark.parametrize("speed", [0.5, 1.0, 2.0])
 @pytest.mark.parametrize("degrees", [10, 20, 28])
@@ -318,7 +328,7 @@ def test_it_drives_over_a_plank(speed, side):
 
 
 def test_the_springs_keep_all_wheels_on_uneven_ground():
-    """One wheel on a 3 cm plate: every tyre still carries, the axles twist against each other."""
+    """One wheel on a 3 cm plate: every tyre still carries, the axles twist."""
     world, robots = trucks([[0.0, 0.0, 0.0]])
     world.add_box(0.31, 0.14, 0.12, 0.12, height=0.03)
     world.overlap = True
