@@ -44,6 +44,7 @@ _WHERE = {
     "Recording": "mjmr.recording",
     "Simulation": "mjmr.simulation",
     "SoccerBot": "mjmr.robots.soccer_bot",
+    "TamiyaTXT1": "mjmr.robots.tamiya_txt1",
     "Team": "mjmr.team",
     "WheelEncoders": "mjmr.sensors.encoders",
     "World": "mjmr.world",

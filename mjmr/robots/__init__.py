@@ -8,6 +8,7 @@ from mjmr.robots.aibo_ers7 import AiboERS7
 from mjmr.robots.nims import Nims
 from mjmr.robots.pioneer2dx import Pioneer2DX
 from mjmr.robots.soccer_bot import SoccerBot
+from mjmr.robots.tamiya_txt1 import TamiyaTXT1
 
 if TYPE_CHECKING:
     from mjmr.robots.platform import Platform
@@ -17,8 +18,17 @@ PLATFORMS = {
     "nims": "mjmr.robots.nims:Nims",
     "pioneer2dx": "mjmr.robots.pioneer2dx:Pioneer2DX",
     "soccer_bot": "mjmr.robots.soccer_bot:SoccerBot",
+    "tamiya_txt1": "mjmr.robots.tamiya_txt1:TamiyaTXT1",
 }
-__all__ = ["PLATFORMS", "AiboERS7", "Nims", "Pioneer2DX", "SoccerBot", "platform_class"]
+__all__ = [
+    "PLATFORMS",
+    "AiboERS7",
+    "Nims",
+    "Pioneer2DX",
+    "SoccerBot",
+    "TamiyaTXT1",
+    "platform_class",
+]
 
 
 def platform_class(name: str) -> "type[Platform]":
