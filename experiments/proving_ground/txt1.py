@@ -28,7 +28,7 @@ class _Faster(TamiyaTXT1):
 
 
 def _course(condition: Mapping[str, Any], platform: TamiyaTXT1) -> Course:
-    world = hall(12.0)
+    world = hall(30.0)
     group = world.add_group(platform, [[0.0, -4.0, 0.0]])
     dt = condition["dt_ms"] / 1000.0
     return Course(Simulation(world, control_period=PERIOD, dt_max=dt), group)
@@ -70,17 +70,16 @@ def unicycle(condition: Mapping[str, Any], seed: int) -> Metrics:
 
 
 def roll_over(condition: Mapping[str, Any], seed: int) -> Metrics:
-    """Ever faster at full lock, slowly, until it lies on its side."""
-    platform = _Faster(command="steering", acceleration=0.05)
-    course = _course(condition, platform)
-    commands = np.tile([5.0, platform.lock], (round(2.0 / PERIOD), 1))
-    speed = 0.0
-    for _ in range(60):
-        log = course.drive(commands).log
+    """20 s at full lock, ever faster from one run to the next, until it lies on its side."""
+    platform = _Faster(command="steering")
+    driven = 0.0
+    for speed in np.arange(1.8, 4.0, 0.05):
+        commands = np.tile([speed, platform.lock], (round(20.0 / PERIOD), 1))
+        log = _course(condition, platform).drive(commands).log
         if log.tilt > _OVER:
-            break
-        speed = float(np.hypot(*log.twists[-1, 0, :2]))
-    return {"held_speed": speed, "rolled": bool(log.tilt > _OVER)}
+            return {"rolls_at": float(speed), "held_driven": driven}
+        driven = float(np.hypot(*log.twists[-50:, 0, :2].T).mean())
+    return {"rolls_at": float("inf"), "held_driven": driven}
 
 
 def _radius(points: Array) -> float:
@@ -108,6 +107,7 @@ def claims() -> list[Claim]:
         sheet(NAME, "unicycle", "top-speed", "at most 2 m/s", "fastest, at speeds that change",
               Bound("<=", 2.02), "top_speed", unit="m/s", published="2 m/s", variant="changing"),
         sheet(NAME, "roll-over", "roll-over", "stays upright at all its speeds",
-              "fastest it goes at full lock before it rolls over, 2 and 5 ms", Bound(">", 2.0),
-              "held_speed", unit="m/s"),
+              "slowest speed asked for at full lock at which it rolls over, in steps of 0.05, 2 and "
+              "5 ms", Bound(">", 2.0),
+              "rolls_at", unit="m/s"),
     ]  # fmt: skip
