@@ -58,18 +58,13 @@ class Group:
             InvalidInputError: Poses of another shape or not finite, or a negative latency.
             UnknownNameError: Unknown team.
         """
-        start = np.array(poses, dtype=np.float64)
-        if start.ndim != 2 or start.shape[1] != 3 or not len(start):
-            raise InvalidInputError(f"poses must have shape (n, 3), n >= 1; got {start.shape}")
-        if not np.isfinite(start).all():
-            raise InvalidInputError("poses must be finite")
+        start = _start(poses)
         if command_latency < 0 or command_latency != int(command_latency):
             raise InvalidInputError(
                 f"command_latency counts control periods, 0 or more; got {command_latency}"
             )
         if team not in TEAM_COLOURS:
             raise UnknownNameError("team", team, TEAM_COLOURS)
-        start.setflags(write=False)
         self.platform, self.start, self.n, self.name = platform, start, len(start), name
         self.team, self.first_number = team, first_number
         self.command_latency = int(command_latency)
@@ -93,6 +88,19 @@ class Group:
         self._executed = np.zeros((self.n, self._columns))
         self._pending = deque([self._command] * self.command_latency)
         self._acknowledged = self._everyone
+
+    def start_at(self, poses: ArrayLike) -> None:
+        """Start elsewhere in the next simulation; :meth:`mjmr.world.World.start_at` calls this.
+
+        Raises:
+            InvalidInputError: Poses of another shape or not finite.
+        """
+        start = _start(poses)
+        if start.shape != self.start.shape:
+            raise InvalidInputError(
+                f"{self.name}: start poses must have shape ({self.n}, 3); got {start.shape}"
+            )
+        self.start = start
 
     def mount(self, sensor: "Sensor", name: str | None = None) -> Any:
         """Mount a sensor on every robot and make it ``group.<name>``.
@@ -227,3 +235,14 @@ class Group:
     def prefixes(self) -> list[str]:
         """MJCF name prefixes of the robots."""
         return [f"{name}/" for name in self.names]
+
+
+def _start(poses: ArrayLike) -> Array:
+    """Start poses, checked and read-only."""
+    start = np.array(poses, dtype=np.float64)
+    if start.ndim != 2 or start.shape[1] != 3 or not len(start):
+        raise InvalidInputError(f"poses must have shape (n, 3), n >= 1; got {start.shape}")
+    if not np.isfinite(start).all():
+        raise InvalidInputError("poses must be finite")
+    start.setflags(write=False)
+    return start

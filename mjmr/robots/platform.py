@@ -145,6 +145,17 @@ class Platform(ABC):
         # neither the speed nor the yaw rate can then be over its limit
         return min(self.max_twist[0] / 2**0.5, self.max_twist[1])
 
+    @property
+    def command_bounds(self) -> Array:
+        """Least and largest value of each column of a command (2, c) while the others are zero.
+
+        Found by asking :meth:`clamp`; a platform whose limits depend on each other, so that a
+        column alone is not let through, states its own.
+        """
+        large = 2.0**20 * np.eye(len(self.command_names))
+        bounds = np.array([self.clamp(-large).diagonal(), self.clamp(large).diagonal()])
+        return np.where(np.abs(bounds) < large.max(), bounds, np.copysign(np.inf, bounds))
+
     def twist_of(self, command: Array) -> Array:
         """Twists (n, 3) that commands (n, c) ask for, body frame; may be the argument itself."""
         return command
