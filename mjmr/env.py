@@ -128,9 +128,11 @@ class WorldPhysics(Physics):
 
     def reset(self, keyframe_id: int | None = None) -> None:
         """Begin the next episode: a new simulation that adopts model and data."""
-        if self.simulation is None or keyframe_id is not None:
+        if self.simulation is None:
             super().reset(keyframe_id)
             return
+        if keyframe_id is not None:
+            raise InvalidInputError("an episode begins at the robots' starts, not at a keyframe")
         self.episode += 1
         stream, old = f"episode{self.episode}", self.simulation
         self._ticks = iter(())
