@@ -87,7 +87,7 @@ def test_extents_of_a_turned_shape_are_where_its_surface_ends(kind, size):
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     found = _reach(model, data, 0)
-    grid, hit = np.linspace(-0.5, 0.5, 201), np.zeros(1, dtype=np.int32)
+    grid, hit = np.linspace(-0.5, 0.5, 101), np.zeros(1, dtype=np.int32)
     for axis in range(3):
         way, start = -np.eye(3)[axis], np.empty(3)
         reach = -1.0
@@ -99,7 +99,7 @@ def test_extents_of_a_turned_shape_are_where_its_surface_ends(kind, size):
                     reach = max(reach, 1.0 - distance)
         # the grid misses a corner by a little
         assert reach <= found[axis] + 1e-9
-        assert reach == pytest.approx(found[axis], abs=0.012)
+        assert reach == pytest.approx(found[axis], abs=0.02)
 
 
 def test_the_table_has_every_robot(capsys):
