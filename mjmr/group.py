@@ -65,6 +65,7 @@ class Group:
             )
         if team not in TEAM_COLOURS:
             raise UnknownNameError("team", team, TEAM_COLOURS)
+        start.setflags(write=False)
         self.platform, self.start, self.n, self.name = platform, start, len(start), name
         self.team, self.first_number = team, first_number
         self.command_latency = int(command_latency)
@@ -100,6 +101,7 @@ class Group:
             raise InvalidInputError(
                 f"{self.name}: start poses must have shape ({self.n}, 3); got {start.shape}"
             )
+        start.setflags(write=False)
         self.start = start
 
     def mount(self, sensor: "Sensor", name: str | None = None) -> Any:
@@ -238,11 +240,10 @@ class Group:
 
 
 def _start(poses: ArrayLike) -> Array:
-    """Start poses, checked and read-only."""
+    """Start poses, checked; a copy."""
     start = np.array(poses, dtype=np.float64)
     if start.ndim != 2 or start.shape[1] != 3 or not len(start):
         raise InvalidInputError(f"poses must have shape (n, 3), n >= 1; got {start.shape}")
     if not np.isfinite(start).all():
         raise InvalidInputError("poses must be finite")
-    start.setflags(write=False)
     return start
