@@ -30,6 +30,7 @@ def _choose_gl() -> None:
 _choose_gl()
 
 _WHERE = {
+    "AiboERS7": "mjmr.robots.aibo_ers7",
     "Camera": "mjmr.sensors.camera",
     "Film": "mjmr.film",
     "Fault": "mjmr.faults",

@@ -85,8 +85,9 @@ class Group:
     def reset(self) -> None:
         """Forget commands; called when a simulation takes the group."""
         self.clamped = np.zeros(self.n, dtype=np.int64)
-        self._command = np.zeros((self.n, self._columns))
-        self._executed = np.zeros((self.n, self._columns))
+        idle = self.platform.idle or np.zeros(self._columns)
+        self._command = np.tile(idle, (self.n, 1))
+        self._executed = self._command.copy()
         self._pending = deque([self._command] * self.command_latency)
         self._acknowledged = self._everyone
 

@@ -68,7 +68,7 @@ def export_xml(world: "World", timestep: float) -> str:
     CartServos(model, world).place(data, 0.0)
     for k, joint in enumerate(spec.joints):
         joint.actfrcrange = model.jnt_actfrcrange[model.joint(joint.name).id if joint.name else k]
-    spec.add_key(name="start", qpos=data.qpos, act=data.act)
+    spec.add_key(name="start", qpos=data.qpos, act=data.act, ctrl=data.ctrl)
     spec.compile()
     return spec.to_xml()
 

@@ -100,6 +100,7 @@ class Platform(ABC):
         title: Maker and product.
         grade: Of the model against its source, A, B or C; see the README beside the model.
         command_names: Of the columns of a command, in order.
+        idle: Command in force until the first one; zeros if empty.
         radius: Of the smallest upright cylinder around the body [m].
         height: Of the same cylinder [m].
         max_twist: Largest speed in the plane [m/s] and yaw rate [rad/s] that a command can ask for.
@@ -112,6 +113,7 @@ class Platform(ABC):
     title: str
     grade: str
     command_names: tuple[str, ...] = ("forward", "left", "turn")
+    idle: tuple[float, ...] = ()
     radius: float
     height: float
     max_twist: tuple[float, float]

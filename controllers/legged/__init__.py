@@ -1,0 +1,1 @@
+"""Walking machines: legs' kinematics, numpy in and numpy out."""
