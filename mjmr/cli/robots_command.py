@@ -91,7 +91,11 @@ def _list() -> int:
             continue
         p = f.platform
         cells = [f"{name}\n{p.title}", _size(f), f"{f.mass:.3g}", _speed(p)]
-        cells += [", ".join(p.command_names), _sensors(p), collapse([*f.sites, *f.cameras])]
+        cells += [
+            _names(p.command_names),
+            _sensors(p),
+            collapse(dict.fromkeys([*f.sites, *f.cameras])),
+        ]
         cells.append(p.grade)
         if measured:
             told = measured.get(name, {})
@@ -186,6 +190,11 @@ def _size(f: "Facts") -> str:
     return " x ".join(f"{v:.2f}" for v in f.size)
 
 
+def _names(names: Sequence[str]) -> str:
+    few = names if len(names) <= 4 else (f"{len(names)}: {names[0]}", "...", names[-1])
+    return ", ".join(few)
+
+
 def _speed(platform: "Platform") -> str:
     speed, rate = platform.max_twist
     return f"{speed:g} m/s, {math.degrees(rate):.0f} deg/s"
@@ -194,15 +203,15 @@ def _speed(platform: "Platform") -> str:
 def _limits(platform: "Platform") -> str:
     limits: Any = platform.limits
     return (
-        f"{limits.max_speed:g} m/s, speeds up by {limits.acceleration:g} and slows down by "
-        f"{limits.deceleration:g} m/s^2"
+        f"{limits.max_speed:.3g} m/s, speeds up by {limits.acceleration:.3g} and slows down by "
+        f"{limits.deceleration:.3g} m/s^2"
     )
 
 
 def _commands(platform: "Platform") -> str:
     low, high = platform.command_bounds
     columns = zip(platform.command_names, low, high, strict=True)
-    return ", ".join(f"{name} {a:g} to {b:g}" for name, a, b in columns)
+    return ", ".join(f"{name} {a:.3g} to {b:.3g}" for name, a, b in columns)
 
 
 def _sensors(platform: "Platform") -> str:

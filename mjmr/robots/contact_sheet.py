@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from mjmr.overlay import draw_text
 from mjmr.render import Renderer
-from mjmr.robots.facts import box_around, facts, stage
+from mjmr.robots.facts import box_around, facts, needed, stage
 from mjmr.robots.platform import Array, Platform
 from mjmr.simulation import Simulation
 from mjmr.world import Ball, World
@@ -53,8 +53,8 @@ def contact_sheet(platform: Platform) -> NDArray[np.uint8]:
 def _studio(platform: Platform) -> World:
     """A room with boxes and balls ahead of the robot and behind it, sized to it."""
     r = max(platform.radius, 0.05)
-    half = 9.0 * r
-    world = World(bounds=[-half, -half, half, half], floor="concrete", wall_height=6.0 * r)
+    half = max(9.0 * r, needed(platform))
+    world = World(bounds=[-half, -half, half, half], floor="concrete", wall_height=0.7 * half)
     for x, y, yaw, side in ((6.5, 2.2, 0.2, 1.2), (7.5, -2.4, -0.3, 0.9), (-4.5, 2.4, 0.9, 1.0)):
         world.add_box(x * r, y * r, side * r, side * r, height=side * r, yaw=yaw, mass=1.0)
     world.add_box(-5.5 * r, -3.2 * r, 2.0 * r, 0.5 * r, height=0.7 * r, yaw=1.2)
@@ -67,8 +67,8 @@ def _studio(platform: Platform) -> World:
         world.props.append(Ball(x=x * r, y=y * r, radius=radius * r, mass=0.5, rgba=rgba))
 
     def light(spec: mujoco.MjSpec) -> None:
-        # the room alone, not the floor around it: shadows and round shapes get finer
-        spec.stat.extent, spec.stat.center = half, [0.0, 0.0, 0.0]
+        # not the whole floor: shadows get finer
+        spec.stat.extent, spec.stat.center = 9.0 * r, [0.0, 0.0, 0.0]
         spec.visual.headlight.ambient = [0.25] * 3
         quality = spec.visual.quality
         quality.numslices, quality.numstacks, quality.shadowsize = 96, 48, 8192
@@ -104,7 +104,7 @@ def _towards(low: Array, high: Array, azimuth: float, elevation: float) -> mujoc
     camera.type = mujoco.mjtCamera.mjCAMERA_FREE
     camera.lookat[:] = (low + high) / 2
     camera.azimuth, camera.elevation = azimuth, elevation
-    camera.distance = 1.35 * half / tangent + along / 2
+    camera.distance = 1.25 * half / tangent + along / 2
     return camera
 
 

@@ -46,7 +46,7 @@ def stage(platform: Platform, world: World | None = None) -> Simulation:
         world: To put it into; by default an empty floor.
     """
     if world is None:
-        half = 2.0 + platform.radius
+        half = needed(platform)
         world = World(bounds=[-half, -half, half, half])
     world.add_group(platform, [[0.0, 0.0, 0.0]])
     simulation = Simulation(world, control_period=0.1, dt_max=0.002)
@@ -55,14 +55,31 @@ def stage(platform: Platform, world: World | None = None) -> Simulation:
     return simulation
 
 
+def needed(platform: Platform) -> float:
+    """How far from the origin a floor has to reach for a robot put there [m].
+
+    That is 1 m more than its model does, with what of it is fixed to the world.
+    """
+    import mujoco
+
+    model = platform.model(0, "yellow").compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    ends = np.abs(data.geom_xpos[:, :2]) + model.geom_rbound[:, None]
+    return 1.0 + max(platform.radius, float(ends.max()))
+
+
 def facts(simulation: Simulation) -> Facts:
     """Measure the first robot of a simulation made by :func:`stage`."""
+    import mujoco
+
     group = simulation.world.groups[0]
     model, prefix = simulation.model, group.prefixes[0]
     low, high = box_around(simulation, seen=False)
     if low[2] < 0.02:
         low[2] = 0.0
-    sites = [model.site(k).name.removeprefix(prefix) for k in range(model.nsite)]
+    led = model.wrap_objid[model.wrap_type == mujoco.mjtWrap.mjWRAP_SITE]  # tendons go there
+    sites = [model.site(k).name.removeprefix(prefix) for k in range(model.nsite) if k not in led]
     cameras = [model.camera(k).name for k in range(model.ncam)]
     return Facts(
         platform=group.platform,

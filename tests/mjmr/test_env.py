@@ -8,6 +8,8 @@ from dm_env import StepType, specs, test_utils
 
 from mjmr.env import environment
 from mjmr.errors import InvalidInputError, SimulationDivergedError, TruthError, UnknownNameError
+from mjmr.robots import PLATFORMS, platform_class
+from mjmr.robots.facts import needed
 from mjmr.robots.pioneer2dx import Pioneer2DX
 from mjmr.robots.soccer_bot import SoccerBot
 from mjmr.sensors.camera import Camera
@@ -167,6 +169,30 @@ def test_a_reset_equals_a_fresh_environment():
     fresh.reset()
     actions = random_actions(used, 20)
     assert bits(used, actions) == bits(fresh, actions)
+
+
+@pytest.mark.parametrize("robot", PLATFORMS)
+def test_every_platform_takes_random_actions_and_a_reset_equals_fresh(robot):
+    def build():
+        half = needed(platform_class(robot)()) + 1.0
+        world = World(bounds=[-half, -half, half, half])
+        world.add_group(platform_class(robot), [[0.0, 0.0, 0.0]])
+        return world
+
+    used, fresh = (make(build, seed=3) for _ in range(2))
+    bits(used, random_actions(used, 20, seed=5))
+    fresh.reset()
+    actions = random_actions(used, 10)
+    assert bits(used, actions) == bits(fresh, actions)
+    seen, spec = used.step(actions[0]).observation, used.observation_spec()
+    for name, value in seen.items():
+        spec[name].validate(value)
+    # clamp lets entries within the bounds pass one by one
+    platform, action = platform_class(robot)(), used.action_spec()
+    for k, bound in enumerate(action.maximum):
+        alone = np.zeros((1, len(action.maximum)))
+        alone[0, k] = 2.0 * bound + 1.0
+        assert platform.clamp(alone)[0, k] <= bound
 
 
 def test_starts_are_drawn_from_the_episodes_own_stream():
