@@ -133,7 +133,7 @@ def number_tables(robot: str) -> list[tuple[str, list[list[str]]]]:
     tables: list[tuple[str, list[list[str]]]] = []
     heading, inside = "", False
     for line in path.read_text().splitlines():
-        cells = [cell.strip() for cell in line.strip("| ").split("|")]
+        cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
         if line.startswith("#"):
             heading = line.lstrip("# ")
         if not line.startswith("|"):

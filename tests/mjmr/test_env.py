@@ -184,9 +184,10 @@ def test_every_platform_takes_random_actions_and_a_reset_equals_fresh(robot):
     fresh.reset()
     actions = random_actions(used, 10)
     assert bits(used, actions) == bits(fresh, actions)
-    seen, spec = used.step(actions[0]).observation, used.observation_spec()
-    for name, value in seen.items():
-        spec[name].validate(value)
+    spec = used.observation_spec()
+    for step in (used.reset(), used.step(actions[0])):
+        for name, value in step.observation.items():
+            spec[name].validate(value)
     # clamp lets entries within the bounds pass one by one
     platform, action = platform_class(robot)(), used.action_spec()
     for k, bound in enumerate(action.maximum):

@@ -62,7 +62,7 @@ def test_every_robot_has_its_numbers_with_sources_and_bounds(robot):
         assert header[0] == "number"
         assert header[-2:] == ["source", "grade"]
         assert rows
-        assert all(len(row) == len(header) and row[-1][0] in "ABC" for row in rows)
+        assert all(len(row) == len(header) and row[-1][0] in "ABC-" for row in rows)
     platform = platform_class(robot)()
     low, high = platform.command_bounds
     assert low.shape == high.shape == (len(platform.command_names),)
