@@ -48,6 +48,7 @@ _WHERE = {
     "Team": "mjmr.team",
     "WheelEncoders": "mjmr.sensors.encoders",
     "World": "mjmr.world",
+    "environment": "mjmr.env",
 }
 __all__ = sorted(_WHERE)  # pyright: ignore[reportUnsupportedDunderAll]
 

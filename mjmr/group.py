@@ -60,11 +60,7 @@ class Group:
             InvalidInputError: Poses of another shape or not finite, or a negative latency.
             UnknownNameError: Unknown team.
         """
-        start = np.array(poses, dtype=np.float64)
-        if start.ndim != 2 or start.shape[1] != 3 or not len(start):
-            raise InvalidInputError(f"poses must have shape (n, 3), n >= 1; got {start.shape}")
-        if not np.isfinite(start).all():
-            raise InvalidInputError("poses must be finite")
+        start = _start(poses)
         if command_latency < 0 or command_latency != int(command_latency):
             raise InvalidInputError(
                 f"command_latency counts control periods, 0 or more; got {command_latency}"
@@ -98,6 +94,20 @@ class Group:
         self._executed = self._command.copy()
         self._pending = deque([self._command] * self.command_latency)
         self._acknowledged = self._everyone
+
+    def start_at(self, poses: ArrayLike) -> None:
+        """Start elsewhere in the next simulation; :meth:`mjmr.world.World.start_at` calls this.
+
+        Raises:
+            InvalidInputError: Poses of another shape or not finite.
+        """
+        start = _start(poses)
+        if start.shape != self.start.shape:
+            raise InvalidInputError(
+                f"{self.name}: start poses must have shape ({self.n}, 3); got {start.shape}"
+            )
+        start.setflags(write=False)
+        self.start = start
 
     def mount(self, sensor: "Sensor", name: str | None = None) -> Any:
         """Mount a sensor on every robot and make it ``group.<name>``.
@@ -239,3 +249,13 @@ class Group:
     def prefixes(self) -> list[str]:
         """MJCF name prefixes of the robots."""
         return [f"{name}/" for name in self.names]
+
+
+def _start(poses: ArrayLike) -> Array:
+    """Start poses, checked; a copy."""
+    start = np.array(poses, dtype=np.float64)
+    if start.ndim != 2 or start.shape[1] != 3 or not len(start):
+        raise InvalidInputError(f"poses must have shape (n, 3), n >= 1; got {start.shape}")
+    if not np.isfinite(start).all():
+        raise InvalidInputError("poses must be finite")
+    return start

@@ -83,6 +83,8 @@ class Study:
         bench: ``() -> str | Mapping``: measures speed, for ``mjmr bench``.
         prepare: ``() -> None``: compiles what the trials need, in the driver, before workers start.
         verdicts: The committed ``verdicts.json``.
+        figures: Committed JSON of what was measured on each robot, ``{robot: {figure: text}}``,
+            for ``mjmr robots``.
         source_packages: Packages whose source makes a result what it is; None means mjmr,
             controllers and the package the trial is in. With ``mjmr`` the models are counted too.
         parts: Roles another class can take; if there are any, the trial is called with a third
@@ -107,6 +109,7 @@ class Study:
     bench: Reference | None = None
     prepare: Reference | None = None
     verdicts: Path | None = None
+    figures: Path | None = None
     source_packages: tuple[str, ...] | None = None
     parts: tuple[Part, ...] = ()
     chosen: tuple[PartChoice, ...] = ()
@@ -254,6 +257,20 @@ class Study:
             return {size: dict(verdicts) for size, verdicts in found.items()}
         except (OSError, ValueError, AttributeError, TypeError) as e:
             raise MjmrError(f"cannot read committed verdicts {self.verdicts}: {e}") from e
+
+    def committed_figures(self) -> dict[str, dict[str, str]]:
+        """What was measured on each robot, ``{robot: {figure: text}}``; empty if there is no file.
+
+        Raises:
+            MjmrError: The file is not of this form.
+        """
+        if self.figures is None or not self.figures.exists():
+            return {}
+        try:
+            found = json.loads(self.figures.read_text())
+            return {r: {k: str(v) for k, v in told.items()} for r, told in found.items()}
+        except (OSError, ValueError, AttributeError) as e:
+            raise MjmrError(f"cannot read committed figures {self.figures}: {e}") from e
 
     def digest(self, size: str) -> str:
         """SHA-256 of all a result of this size depends on: declaration, sources, versions.

@@ -4,7 +4,7 @@ The declaration is what planners, meters and films read; the MjSpec is built fro
 simulation or a film needs one, so that a kinematic run loads no MuJoCo.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -179,6 +179,23 @@ class World:
             raise InvalidInputError(f"there is a group named {group.name!r} already")
         self.groups.append(group)
         return group
+
+    def start_at(self, poses: Mapping[str, ArrayLike]) -> None:
+        """Let groups start elsewhere in the next simulation.
+
+        Args:
+            poses: Start poses (n, 3) by the groups' names, world frame.
+
+        Raises:
+            UnknownNameError: No such group; lists those there are.
+            InvalidInputError: Poses of another shape, not finite or outside the walls.
+        """
+        groups = {group.name: group for group in self.groups}
+        for name, start in poses.items():
+            if name not in groups:
+                raise UnknownNameError("group", name, groups)
+            groups[name].start_at(start)
+            self._check_inside(groups[name])
 
     def add_camera(
         self,

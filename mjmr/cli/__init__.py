@@ -16,6 +16,7 @@ COMMANDS = {
     "replay": "film a trace, or the last second of a trial that failed",
     "film": "make a study's film",
     "mjcf": "write the MuJoCo model of one of a study's conditions",
+    "robots": "the robots there are: size, mass, speed, sensors, what was measured; pictures",
     "bench": "measure speed",
     "export": "write results as CSV or Parquet",
 }
@@ -41,6 +42,7 @@ EXAMPLES
   mjmr run safe-navigation --only sigma_mm=0,4 --seeds 10 --out renders/trial
   mjmr run safe-navigation --with navigator=dash.py:Dash
   mjmr trial safe-navigation scene=cross4 --seed 7 --film
+  mjmr robots pioneer2dx --view
 
 FILES
   renders/STUDY/SIZE/   what a run leaves: results.sqlite, claims.json, claims.md, run.json,

@@ -1,5 +1,6 @@
 """What every platform offers: a model to attach, a drive to bind, limits of its commands."""
 
+import itertools
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -184,6 +185,23 @@ class Platform(ABC):
         """A command none of whose entries is above this needs no clamping."""
         # neither the speed nor the yaw rate can then be over its limit
         return min(self.max_twist[0] / 2**0.5, self.max_twist[1])
+
+    @property
+    def command_bounds(self) -> Array:
+        """Least and largest value of each column of a command (2, c) that :meth:`clamp` lets pass.
+
+        Of columns that limit each other only some combinations pass; here they are asked for alone
+        and in pairs.
+        """
+        large, columns = 2.0**20, len(self.command_names)
+        asked = []
+        for i, j in itertools.combinations_with_replacement(range(columns), 2):
+            for a, b in itertools.product((-large, large), repeat=2):
+                asked.append(np.zeros(columns))
+                asked[-1][[i, j]] = a, b
+        passed = self.clamp(np.array(asked))
+        bounds = np.array([passed.min(axis=0), passed.max(axis=0)]) + 0.0  # no -0
+        return np.where(np.abs(bounds) < large, bounds, np.copysign(np.inf, bounds))
 
     def twist_of(self, command: Array) -> Array:
         """Twists (n, 3) that commands (n, c) ask for, body frame; may be the argument itself."""

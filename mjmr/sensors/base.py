@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError
 
@@ -125,6 +125,14 @@ class Sensor(ABC):
             hear(sample.number, sample.time, delivered, lambda: self._value(sample))
 
         self._listener = listen
+
+    @property
+    def reading_bounds(self) -> tuple[ArrayLike, ArrayLike]:
+        """Least and largest value :meth:`read` can return; they broadcast to a reading's shape.
+
+        Without bounds unless a sensor knows better. NaN, where a sensor delivers it, is neither.
+        """
+        return -np.inf, np.inf
 
     @property
     def sampled_at(self) -> float:

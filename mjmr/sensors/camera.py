@@ -23,6 +23,7 @@ _KINDS: dict[str, tuple[Any, tuple[int, ...], float]] = {
     "depth": (np.float32, (), np.nan),
     "segmentation": (np.int32, (), -1),
 }
+_BOUNDS = {"rgb": (0, 255), "depth": (0.0, np.inf), "segmentation": (-1, np.inf)}
 MODALITIES = tuple(_KINDS)
 
 
@@ -136,6 +137,11 @@ class Camera(Sensor):
             InvalidInputError: The camera is in no simulation yet.
         """
         return super().read()
+
+    @property
+    def reading_bounds(self) -> tuple[ArrayLike, ArrayLike]:
+        """Of a pixel."""
+        return _BOUNDS[self.modality]
 
     @property
     def fresh(self) -> NDArray[np.bool_] | bool:

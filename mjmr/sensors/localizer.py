@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError
 from mjmr.geometry import wrap_angle
@@ -58,6 +58,11 @@ class Localizer(Sensor):
         A row of NaN: the robot was not in that report.
         """
         return super().read()
+
+    @property
+    def reading_bounds(self) -> tuple[ArrayLike, ArrayLike]:
+        """Yaw is wrapped; noise has no bounds."""
+        return [-np.inf, -np.inf, -np.pi], [np.inf, np.inf, np.pi]
 
     def prepare(self, sequence: np.random.SeedSequence, group: "Group") -> None:
         """Set up the noise streams."""

@@ -76,6 +76,10 @@ BAD = {
     "export toy a.xlsx": "a file to export to ends in .csv or .parquet, not a.xlsx",
     "run toy --cluster host:8786": "a cluster's address is tcp://host:port",
     "run toy --cluster tcp://h:1 --workers 2": "--cluster and --workers exclude each other",
+    "robots pionee": "unknown robot 'pionee'; valid: pioneer2dx, ",
+    "robots --view": "--view takes the name of a robot",
+    "robots soccer_bot --out a.png": "it takes --view",
+    "robots soccer_bot --view --out nowhere/a.png": "there is no folder nowhere",
     "list all": "unrecognized options: all",
 }
 
