@@ -35,6 +35,7 @@ _WHERE = {
     "Fault": "mjmr.faults",
     "Group": "mjmr.group",
     "KinematicSimulation": "mjmr.kinematics",
+    "Koala": "mjmr.robots.koala",
     "Localizer": "mjmr.sensors.localizer",
     "MjmrError": "mjmr.errors",
     "Pioneer2DX": "mjmr.robots.pioneer2dx",

@@ -4,6 +4,7 @@ import importlib
 from typing import TYPE_CHECKING
 
 from mjmr.errors import UnknownNameError
+from mjmr.robots.koala import Koala
 from mjmr.robots.pioneer2dx import Pioneer2DX
 from mjmr.robots.soccer_bot import SoccerBot
 
@@ -11,10 +12,11 @@ if TYPE_CHECKING:
     from mjmr.robots.platform import Platform
 
 PLATFORMS = {
+    "koala": "mjmr.robots.koala:Koala",
     "pioneer2dx": "mjmr.robots.pioneer2dx:Pioneer2DX",
     "soccer_bot": "mjmr.robots.soccer_bot:SoccerBot",
 }
-__all__ = ["PLATFORMS", "Pioneer2DX", "SoccerBot", "platform_class"]
+__all__ = ["PLATFORMS", "Koala", "Pioneer2DX", "SoccerBot", "platform_class"]
 
 
 def platform_class(name: str) -> "type[Platform]":
