@@ -29,14 +29,14 @@ class Koala(Unicycle):
     radius = 0.209
     height = 0.20
     max_twist = (0.6, 3.75)
-    braking = 3.0
+    braking = 2.0
     wheels = WHEELS
     rolling_radius = 0.04142
     track = 0.285
     effective_track = 0.3196
     disc_radius = 0.05
 
-    def __init__(self, *, acceleration: float = 1.0, turn_acceleration: float = 6.0):
+    def __init__(self, *, acceleration: float = 1.0, turn_acceleration: float = 4.0):
         """Set what the base's firmware allows; see :class:`mjmr.robots.unicycle.Unicycle`."""
         super().__init__(acceleration=acceleration, turn_acceleration=turn_acceleration)
 
