@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from mjmr.sensors.base import Sensor
 
+
 class Pioneer2DX(Unicycle):
     """ActivMedia Pioneer 2-DX; commands are (forward [m/s], turn [rad/s]).
 

@@ -1,4 +1,4 @@
-"""The skid-steer drive: a free body on three wheels a side, geared together and turned by a motor."""
+"""The skid-steer drive: a free body on three wheels a side, geared together, one motor a side."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
