@@ -21,7 +21,7 @@ class SkidSteerDrive(DiffDrive):
 
     Commands are (forward, turn). Wheels named as ``WHEELS`` are in the middle of a side; the model
     gears those named as ``GEARED`` to them. In a turn the wheels scrub: what that takes from the
-    motors would slow the sides by a few per cent, so an integral part at every ``frame`` makes the
+    motors would slow the sides by about a tenth, so an integral part at every ``frame`` makes the
     wheels' *encoders* follow the command. Speeds of the sides come from a turn by the effective
     track, and both from rims by the rolling radius, as of firmware calibrated on the floor at a
     working turn rate: what the robot then does is up to the contacts.

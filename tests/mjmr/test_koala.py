@@ -303,3 +303,20 @@ def test_commands_beyond_a_sides_speed_keep_their_curvature():
         robots.drive([[0.0, 0.0], [np.nan, 0.0]])
     with pytest.raises(InvalidInputError, match="accelerations of Koala"):
         Koala(turn_acceleration=-1.0)
+
+
+def test_nobody_climbs_in_a_crowd():
+    """20 robots, 5 s among boxes as hard as their motors can; without the bay one tips in 2 s."""
+    rng = np.random.default_rng(5)
+    grid = np.stack(np.meshgrid(np.arange(5), np.arange(5)), axis=-1).reshape(-1, 2) * 0.75 - 1.5
+    world = World(bounds=[-2, -2, 2, 2], wall_height=0.5)
+    for x, y in grid[20:]:
+        world.add_box(x, y, 0.3, 0.3, height=0.4, yaw=0.4)
+    robots = world.add_group(
+        Koala(acceleration=50.0, turn_acceleration=150.0),
+        np.column_stack([grid[:20], rng.uniform(-np.pi, np.pi, 20)]),
+    )
+    simulation = Simulation(world, control_period=PERIOD)
+    rates = rng.uniform(-1.0, 1.0, (5, 20)).repeat(10, axis=0)
+    commands = np.stack([np.full((50, 20), 0.4), rates], axis=-1)
+    assert drive(simulation, robots, commands)[2] < 4.0
