@@ -37,6 +37,7 @@ _WHERE = {
     "Fault": "mjmr.faults",
     "Group": "mjmr.group",
     "KinematicSimulation": "mjmr.kinematics",
+    "Koala": "mjmr.robots.koala",
     "Localizer": "mjmr.sensors.localizer",
     "MjmrError": "mjmr.errors",
     "Nims": "mjmr.robots.nims",

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from mjmr.errors import UnknownNameError
 from mjmr.robots.aibo_ers7 import AiboERS7
+from mjmr.robots.koala import Koala
 from mjmr.robots.nims import Nims
 from mjmr.robots.pioneer2dx import Pioneer2DX
 from mjmr.robots.soccer_bot import SoccerBot
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 
 PLATFORMS = {
     "aibo_ers7": "mjmr.robots.aibo_ers7:AiboERS7",
+    "koala": "mjmr.robots.koala:Koala",
     "nims": "mjmr.robots.nims:Nims",
     "pioneer2dx": "mjmr.robots.pioneer2dx:Pioneer2DX",
     "soccer_bot": "mjmr.robots.soccer_bot:SoccerBot",
@@ -23,6 +25,7 @@ PLATFORMS = {
 __all__ = [
     "PLATFORMS",
     "AiboERS7",
+    "Koala",
     "Nims",
     "Pioneer2DX",
     "SoccerBot",

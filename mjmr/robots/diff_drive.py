@@ -34,8 +34,26 @@ class DiffDrive:
             (forward, turn), by rolling without slip.
     """
 
-    def __init__(self, model: "mujoco.MjModel", prefixes: Sequence[str]):
-        """Look up every index once, and the geometry of the wheels."""
+    def __init__(
+        self,
+        model: "mujoco.MjModel",
+        prefixes: Sequence[str],
+        *,
+        geared: Sequence[Sequence[str]] = ((), ()),
+        rolling_radius: float | None = None,
+        effective_track: float | None = None,
+    ):
+        """Look up every index once, and the geometry of the wheels.
+
+        Args:
+            model: The compiled model.
+            prefixes: Of the robots in it.
+            geared: Hinges of further wheels that the left and the right servo turn (k each).
+            rolling_radius: Of the wheels [m]; by default what follows from how deep the first tread
+                stands in the floor.
+            effective_track: Of two wheels that would turn the robot as its sides do [m]; by default
+                the track.
+        """
         self._half_step = model.opt.timestep / 2.0
         free = [model.joint(f"{p}free") for p in prefixes]
         self._qpos = np.array([j.qposadr[0] for j in free])[:, None] + np.arange(7)
@@ -45,16 +63,21 @@ class DiffDrive:
         self._wheel_qvel = np.array([[j.dofadr[0] for j in row] for row in wheels])
         self._servo = np.array([[model.actuator(f"{p}{w}").id for w in WHEELS] for p in prefixes])
         self._act = model.actuator_actadr[self._servo]
+        further = [[model.joint(f"{p}{w}") for side in geared for w in side] for p in prefixes]
+        self._geared_qpos = np.array([[j.qposadr[0] for j in row] for row in further], dtype=int)
+        self._geared_qvel = np.array([[j.dofadr[0] for j in row] for row in further], dtype=int)
         body = model.jnt_bodyid[free[0].id]
         alone = _alone(model, int(body))
         self._height, self._pitch = _rest(alone, self._qpos[0], self._qvel[0])
         self.radius = float(model.geom_size[model.geom(f"{prefixes[0]}{TREADS[0]}").id, 0])
-        self.rolling_radius = self.radius + self._height / 2.0
+        self.rolling_radius = rolling_radius or self.radius + self._height / 2.0
         hubs = [model.body_pos[model.jnt_bodyid[j.id]] for j in wheels[0]]
         self.track = float(hubs[0][1] - hubs[1][1])
-        self.wheel_speeds = wheel_speeds(self.rolling_radius, self.track)
+        self.wheel_speeds = wheel_speeds(self.rolling_radius, effective_track or self.track)
         sideways = np.insert(self.wheel_speeds, 1, 0.0, axis=1)
-        inertia = twist_inertia(alone, self._qvel[0], self._wheel_qvel[0], sideways)
+        turning = np.concatenate([self._wheel_qvel[0], self._geared_qvel[0]])
+        sides = [0, 1] + [side for side, names in enumerate(geared) for _ in names]
+        inertia = twist_inertia(alone, self._qvel[0], turning, sideways[sides])
         # a servo of gain k gives the torque t when its set point is t / k ahead
         share = np.linalg.inv(self.wheel_speeds).T
         share /= float(model.actuator_gainprm[self._servo[0, 0], 0])
@@ -72,8 +95,10 @@ class DiffDrive:
         data.qpos[self._qpos[:, 5]] = np.cos(yaw) * np.sin(pitch)
         data.qpos[self._qpos[:, 6]] = np.sin(yaw) * np.cos(pitch)
         data.qpos[self._wheel_qpos] = 0.0
+        data.qpos[self._geared_qpos] = 0.0
         data.qvel[self._qvel] = 0.0
         data.qvel[self._wheel_qvel] = 0.0
+        data.qvel[self._geared_qvel] = 0.0
         data.act[self._act] = 0.0
 
     def poses(self, data: "mujoco.MjData") -> Array:
