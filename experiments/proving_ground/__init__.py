@@ -30,7 +30,7 @@ study = Study(
             "platform",
             "who is tested; sensors: what robots perceive with",
             "pioneer2dx",
-            ("pioneer2dx", "koala", "aibo_ers7", "tamiya_txt1", "nims", "sensors"),
+            ("pioneer2dx", "koala", "aibo_ers7", "tamiya_txt1", "nims", "soccer_bot", "sensors"),
         ),
         Parameter("test", "which manoeuvre or measurement; see the platform's module", "straight"),
         Parameter("variant", "which kind of it, where a test has kinds", "plain"),

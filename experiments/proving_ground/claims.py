@@ -5,8 +5,8 @@ A bound is ours unless the data sheet gives one; all were fixed before the runs 
 
 from experiments.proving_ground import noise
 from experiments.proving_ground.trial import MODULES, module
-from mjmr.robots import PLATFORMS
 from mjmr.claims import Claim
+from mjmr.robots import PLATFORMS
 
 
 def claims() -> list[Claim]:

@@ -6,15 +6,15 @@ from typing import Any
 
 import cv2
 import numpy as np
+from mjmr.sensors.lidar import Lidar
+from mjmr.sensors.rangers import Sonar
 
-from experiments.proving_ground.course import LARGE, Array, Metrics, hall, sheet
+from experiments.proving_ground.course import Array, Metrics, hall, sheet
 from mjmr.claims import Bound, Claim
 from mjmr.randomness import Streams
 from mjmr.robots.pioneer2dx import Pioneer2DX
 from mjmr.robots.soccer_bot import SoccerBot
 from mjmr.sensors.camera import Camera
-from mjmr.sensors.lidar import Lidar
-from mjmr.sensors.rangers import Sonar
 from mjmr.simulation import Simulation
 from mjmr.world import World
 
