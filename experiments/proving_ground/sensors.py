@@ -23,7 +23,7 @@ _PLANE = 0.12  # m, height of the scan: through hulls, soccer robots and boxes
 
 
 def lidar(condition: Mapping[str, Any], seed: int) -> Metrics:
-    """Scans of three Pioneers among boxes, soccer robots and each other, against edges and discs."""
+    """Three Pioneers scan boxes, soccer robots and each other, against edges and discs."""
     world, poses = hall(5.0), _places(seed, 12, 4.3)
     for x, y, yaw in poses[:6]:
         world.add_box(x, y, 0.5, 0.3, yaw=yaw, height=0.4)

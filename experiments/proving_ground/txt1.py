@@ -107,7 +107,6 @@ def claims() -> list[Claim]:
         sheet(NAME, "unicycle", "top-speed", "at most 2 m/s", "fastest, at speeds that change",
               Bound("<=", 2.02), "top_speed", unit="m/s", published="2 m/s", variant="changing"),
         sheet(NAME, "roll-over", "roll-over", "stays upright at all its speeds",
-              "slowest speed asked for at full lock at which it rolls over, in steps of 0.05, 2 and "
-              "5 ms", Bound(">", 2.0),
-              "rolls_at", unit="m/s"),
+              "slowest speed asked for at full lock at which it rolls over, in steps of 0.05 m/s, "
+              "2 and 5 ms", Bound(">", 2.0), "rolls_at", unit="m/s"),
     ]  # fmt: skip

@@ -1,6 +1,6 @@
 """The differential drive: a free body on two driven wheels and supports that slide."""
 
-import copy
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -8,7 +8,8 @@ import numpy as np
 
 from mjmr.jit import njit
 from mjmr.robots.free_body import free_poses, free_twists, twist_inertia
-from mjmr.robots.platform import FLOOR, Array
+from mjmr.robots.platform import Array
+from mjmr.robots.rest import alone, rest
 
 if TYPE_CHECKING:
     import mujoco
@@ -66,9 +67,9 @@ class DiffDrive:
         further = [[model.joint(f"{p}{w}") for side in geared for w in side] for p in prefixes]
         self._geared_qpos = np.array([[j.qposadr[0] for j in row] for row in further], dtype=int)
         self._geared_qvel = np.array([[j.dofadr[0] for j in row] for row in further], dtype=int)
-        body = model.jnt_bodyid[free[0].id]
-        alone = _alone(model, int(body))
-        self._height, self._pitch = _rest(alone, self._qpos[0], self._qvel[0])
+        base = int(model.jnt_bodyid[free[0].id])
+        stands = rest(model, base, self._qvel[0, [2, 4]])[self._qpos[0]]
+        self._height, self._pitch = float(stands[2]), 2.0 * math.atan2(stands[5], stands[3])
         self.radius = float(model.geom_size[model.geom(f"{prefixes[0]}{TREADS[0]}").id, 0])
         self.rolling_radius = rolling_radius or self.radius + self._height / 2.0
         hubs = [model.body_pos[model.jnt_bodyid[j.id]] for j in wheels[0]]
@@ -77,7 +78,7 @@ class DiffDrive:
         sideways = np.insert(self.wheel_speeds, 1, 0.0, axis=1)
         turning = np.concatenate([self._wheel_qvel[0], self._geared_qvel[0]])
         sides = [0, 1] + [side for side, names in enumerate(geared) for _ in names]
-        inertia = twist_inertia(alone, self._qvel[0], turning, sideways[sides])
+        inertia = twist_inertia(alone(model, base), self._qvel[0], turning, sideways[sides])
         # a servo of gain k gives the torque t when its set point is t / k ahead
         share = np.linalg.inv(self.wheel_speeds).T
         share /= float(model.actuator_gainprm[self._servo[0, 0], 0])
@@ -149,45 +150,3 @@ def _ramp(act, ctrl, set_point, servo, speeds, ahead, turning, start, target, pe
                 slope += speeds[k, c] * rate
             act[set_point[i, k]] = begin - slope * half_step
             ctrl[servo[i, k]] = slope
-
-
-def _alone(model: "mujoco.MjModel", body: int) -> "mujoco.MjModel":
-    """Copy of a model in which only the robot with this base and the floor collide."""
-    alone = copy.copy(model)
-    others = alone.body_rootid[alone.geom_bodyid] != body
-    others[model.geom(FLOOR).id] = False
-    alone.geom_contype[others] = 0
-    alone.geom_conaffinity[others] = 0
-    return alone
-
-
-def _rest(alone: "mujoco.MjModel", qpos: Array, qvel: Array) -> tuple[float, float]:
-    """Height [m] and pitch [rad] at which contact carries a robot: both near zero.
-
-    Args:
-        alone: Of :func:`_alone`.
-        qpos: Indices of its free joint (7,).
-        qvel: The same in ``qvel`` (6,).
-    """
-    import mujoco
-
-    data = mujoco.MjData(alone)
-
-    def acceleration(state: Array) -> Array:
-        data.qpos[qpos] = 0.0
-        data.qpos[qpos[2]] = state[0]
-        data.qpos[qpos[[3, 5]]] = np.cos(state[1] / 2.0), np.sin(state[1] / 2.0)
-        mujoco.mj_forward(alone, data)
-        return data.qacc[qvel[[2, 4]]].copy()
-
-    # Newton's method: contact forces grow smoothly with depth
-    state: Array = np.array([-2e-4, 0.0])
-    nudge = 1e-7
-    nudges: Array = nudge * np.eye(2)
-    for _ in range(30):
-        found = acceleration(state)
-        slopes = [(acceleration(state + d) - found) / nudge for d in nudges]
-        state -= np.linalg.solve(np.transpose(slopes), found)
-        if np.abs(found).max() < 1e-9:
-            break
-    return float(state[0]), float(state[1])

@@ -1,6 +1,5 @@
 """Legged robots as arrays: position servos whose targets move no faster than the joints can."""
 
-import copy
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -9,7 +8,8 @@ import numpy as np
 from mjmr.errors import InvalidInputError
 from mjmr.robots.free_body import free_poses, free_twists
 from mjmr.robots.motion import BoundMotion, Proprioception
-from mjmr.robots.platform import FLOOR, Array
+from mjmr.robots.platform import Array
+from mjmr.robots.rest import alone
 
 if TYPE_CHECKING:
     import mujoco
@@ -155,20 +155,17 @@ class JointServos:
         """
         import mujoco
 
-        alone = copy.copy(model)
-        others = alone.body_rootid[alone.geom_bodyid] != alone.jnt_bodyid[free]
-        others[model.geom(FLOOR).id] = False
-        alone.geom_contype[others] = 0
-        alone.geom_conaffinity[others] = 0
-        data = mujoco.MjData(alone)
+        base = int(model.jnt_bodyid[free])
+        only = alone(model, base)
+        data = mujoco.MjData(only)
         data.qpos[self._angle] = self._home
         data.ctrl[self._servo] = self._home
         data.qpos[self._qpos[:, 2]] = 1.0
-        mujoco.mj_kinematics(alone, data)
-        own = ~others & (model.geom_contype > 0) & (model.geom_bodyid > 0)
-        lowest = (data.geom_xpos[own, 2] - alone.geom_rbound[own]).min()
+        mujoco.mj_kinematics(only, data)
+        own = (model.body_rootid[model.geom_bodyid] == base) & (model.geom_contype > 0)
+        lowest = (data.geom_xpos[own, 2] - only.geom_rbound[own]).min()
         data.qpos[self._qpos[:, 2]] = 1.0 - lowest + _DROP
-        mujoco.mj_step(alone, data, round(_SETTLE / alone.opt.timestep))
+        mujoco.mj_step(only, data, round(_SETTLE / only.opt.timestep))
         pose = data.qpos[self._qpos[0]]
         tilt = pose[3:].copy()
         # without the heading it may have turned to: about the vertical, which comes first

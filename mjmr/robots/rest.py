@@ -31,15 +31,15 @@ def rest(model: "mujoco.MjModel", base: int, freedoms: NDArray[np.int64]) -> Arr
     """
     import mujoco
 
-    alone = _alone(model, base)
-    data = mujoco.MjData(alone)
+    only = alone(model, base)
+    data = mujoco.MjData(only)
 
     def acceleration(moved: Array) -> Array:
-        step = np.zeros(alone.nv)
+        step = np.zeros(only.nv)
         step[freedoms] = moved
-        data.qpos[:] = alone.qpos0
-        mujoco.mj_integratePos(alone, data.qpos, step, 1.0)
-        mujoco.mj_forward(alone, data)
+        data.qpos[:] = only.qpos0
+        mujoco.mj_integratePos(only, data.qpos, step, 1.0)
+        mujoco.mj_forward(only, data)
         return data.qacc[freedoms].copy()
 
     # Newton's method: contact forces grow smoothly with depth
@@ -62,11 +62,11 @@ def rest(model: "mujoco.MjModel", base: int, freedoms: NDArray[np.int64]) -> Arr
     )
 
 
-def _alone(model: "mujoco.MjModel", base: int) -> "mujoco.MjModel":
-    """Copy of a model in which only one robot and the floor collide."""
-    alone = copy.copy(model)
-    others = alone.body_rootid[alone.geom_bodyid] != base
+def alone(model: "mujoco.MjModel", base: int) -> "mujoco.MjModel":
+    """Copy of a model in which only the floor and the robot with this base, a body, collide."""
+    only = copy.copy(model)
+    others = only.body_rootid[only.geom_bodyid] != base
     others[model.geom(FLOOR).id] = False
-    alone.geom_contype[others] = 0
-    alone.geom_conaffinity[others] = 0
-    return alone
+    only.geom_contype[others] = 0
+    only.geom_conaffinity[others] = 0
+    return only
