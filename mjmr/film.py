@@ -1,6 +1,7 @@
 """Films: recorded states rendered with overlays, side by side if there are several."""
 
 import copy
+import dataclasses
 import math
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -30,12 +31,18 @@ class Film:
     def __init__(self, title: str, options: FilmOptions | None = None):
         """Args: title: Written at the top. options: How it looks."""
         self.title, self.options = title, options or FilmOptions()
-        self._panels: list[tuple[Footage, str]] = []
+        self._panels: list[tuple[Footage, str, FilmOptions]] = []
 
-    def add(self, shown: Recording | Footage, label: str = "") -> None:
-        """Add a panel to the right of those there are: what has been recorded by now."""
+    def add(self, shown: Recording | Footage, label: str = "", **changes: Any) -> None:
+        """Add a panel to the right of those there are: what has been recorded by now.
+
+        Args:
+            shown: Recording or footage.
+            label: Written in its corner.
+            changes: Of the film's options, for this panel: ``camera`` and ``follow``.
+        """
         footage = shown.footage() if isinstance(shown, Recording) else shown
-        self._panels.append((footage, label))
+        self._panels.append((footage, label, dataclasses.replace(self.options, **changes)))
 
     def write(self, path: str | Path) -> Path:
         """Render every frame and write the file; returns its path.
@@ -62,7 +69,7 @@ class Film:
         return self.options.speed or max(1.0, math.ceil(self._length() / MAX_SECONDS * 10) / 10)
 
     def _length(self) -> float:
-        return max(float(r.times[-1] - r.times[0]) for r, _ in self._panels)
+        return max(float(r.times[-1] - r.times[0]) for r, _, _ in self._panels)
 
     def _frame_times(self) -> Sequence[float]:
         if not self._panels:
@@ -76,7 +83,7 @@ class Film:
         """Whole pictures; the next one is rendered while the caller encodes the last."""
         options, count = self.options, len(self._panels)
         width, height = options.width // count // 2 * 2, options.height - _HEADER
-        panels = [_PanelThread(r, label, width, height, options) for r, label in self._panels]
+        panels = [_PanelThread(r, label, width, height, own) for r, label, own in self._panels]
         try:
             ahead = [panel.picture(times[0]) for panel in panels]
             for k, time in enumerate(times):

@@ -4,6 +4,9 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
+from controllers.legged.gait import Trot
+from controllers.legged.heading import HeadingLoop
+from controllers.legged.motion import AiboMotion
 from mjmr.sensors.compass import Compass
 
 from experiments.proving_ground.aibo_trials import get_up, kick, roll
@@ -45,12 +48,15 @@ def floor_friction(world: Any, friction: float) -> None:
     world.edit(change)
 
 
-def _dog(condition: Mapping[str, Any], start: Any) -> tuple[Any, Any]:
-    from controllers.legged import AiboMotion
+def engine() -> AiboMotion:
+    """What walks and acts: the trot, the head at home, and every action."""
+    return AiboMotion(Trot())
 
+
+def _dog(condition: Mapping[str, Any], start: Any) -> tuple[Any, Any]:
     world = hall(4.0)
     floor_friction(world, condition["friction"])
-    return world, world.add_group(AiboERS7(AiboMotion()), [start])
+    return world, world.add_group(AiboERS7(engine()), [start])
 
 
 def walk(condition: Mapping[str, Any], seed: int) -> Metrics:
@@ -69,10 +75,8 @@ def walk(condition: Mapping[str, Any], seed: int) -> Metrics:
             rates.append(np.abs(drive.joint_rates(simulation.data)) / AiboERS7.joint_rates)
 
     simulation.watch_steps(measure)
-    command = np.zeros(group.command.shape[1])
-    command[:3] = asked
     ticks = round((_START + _MEASURED) / PERIOD)
-    log = course.drive(np.tile(command, (ticks, 1))).log
+    log = course.drive(np.tile(engine().command(asked), (ticks, 1))).log
     late = log.times > _START
     mean = log.twists[late, 0].mean(axis=0)
     yaw, times = log.yaw[late, 0], log.times[late]
@@ -89,8 +93,6 @@ def walk(condition: Mapping[str, Any], seed: int) -> Metrics:
 
 def straight(condition: Mapping[str, Any], seed: int) -> Metrics:
     """Walk 3 m with the heading held by a compass."""
-    from controllers.legged import HeadingLoop
-
     world, group = _dog(condition, (-2.0, 0.0, 0.0))
     group.mount(Compass(rate=1 / PERIOD, noise=np.radians(1.0)))
     group.mount(Localizer(rate=1 / PERIOD))
@@ -98,15 +100,13 @@ def straight(condition: Mapping[str, Any], seed: int) -> Metrics:
         world, seed=seed, control_period=PERIOD, dt_max=condition["dt_ms"] / 1000.0
     )
     course = Course(simulation, group)
-    heading = HeadingLoop(goal=np.zeros(1))
-    command = np.zeros(group.command.shape)
+    loop, motion = HeadingLoop(), engine()
     for _ in simulation.ticks(14.0):
         # where it is decides when the course ends, not how it walks
         if group.localizer.read()[0, 0] > 1.0:
             break
-        command[:, 0] = 0.30
-        command[:, 2] = heading.step(group.compass.read())
-        group.drive(command)
+        turn = loop.turn(group.compass.read(), 0.0)
+        group.drive(motion.command([[0.30, 0.0, turn[0]]]))
     pose = course.log.poses[-1, 0]
     return {
         "way_m": float(pose[0] + 2.0),
