@@ -30,14 +30,20 @@ def _choose_gl() -> None:
 _choose_gl()
 
 _WHERE = {
+    "Bumper": "mjmr.sensors.bumper",
     "Camera": "mjmr.sensors.camera",
+    "Compass": "mjmr.sensors.compass",
     "Film": "mjmr.film",
     "Fault": "mjmr.faults",
+    "ForceTorque": "mjmr.sensors.force_torque",
     "Group": "mjmr.group",
+    "IMU": "mjmr.sensors.imu",
     "KinematicSimulation": "mjmr.kinematics",
     "Localizer": "mjmr.sensors.localizer",
     "MjmrError": "mjmr.errors",
+    "PanTilt": "mjmr.sensors.pan_tilt",
     "Pioneer2DX": "mjmr.robots.pioneer2dx",
+    "Radio": "mjmr.radio",
     "Recording": "mjmr.recording",
     "Simulation": "mjmr.simulation",
     "SoccerBot": "mjmr.robots.soccer_bot",

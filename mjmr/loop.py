@@ -16,6 +16,7 @@ from mjmr.watch import announce
 
 if TYPE_CHECKING:
     from mjmr.group import Group
+    from mjmr.radio import Radio
     from mjmr.sensors.base import Sensor
     from mjmr.sensors.studio import Studio
     from mjmr.world import World
@@ -96,6 +97,9 @@ class TickedSimulation(ABC):
         notes: What was noted last; see :meth:`note`.
         caption: Returns a line of text for films; it may read truth.
         diverged: True once the physics has left the plausible range.
+        radios: By name, in the order they were set up.
+        message_followers: Called by radios with every message: when sent [s], when delivered (k,)
+            [s] or NaN, sender, receivers (k,), bytes. For traces.
     """
 
     def __init__(
@@ -118,6 +122,8 @@ class TickedSimulation(ABC):
         self.notes: dict[str, Array] = {}
         self.caption: Callable[[], str] = str
         self.diverged = False
+        self.radios: dict[str, Radio] = {}
+        self.message_followers: list[Callable[[float, Array, int, Any, int], None]] = []
         self._observers: list[Callable[[], None]] = []
         self._started = False
         self._studio: Studio | None = None
@@ -160,6 +166,18 @@ class TickedSimulation(ABC):
                 )
             fresh[key] = array
         self.notes = fresh
+
+    def add_radio(self, radio: "Radio") -> None:
+        """Make a radio part of snapshots; it calls this itself.
+
+        Raises:
+            InvalidInputError: There is one of that name already.
+        """
+        if radio.name in self.radios:
+            raise InvalidInputError(
+                f"this simulation has a radio named {radio.name!r} already; name the other one"
+            )
+        self.radios[radio.name] = radio
 
     @property
     def time(self) -> float:
@@ -254,7 +272,16 @@ class TickedSimulation(ABC):
         return Snapshot(self.time, self.step, self._physics_state(), parts)
 
     def restore(self, snapshot: Snapshot) -> None:
-        """Go back (or forward) to ``snapshot``, taken in a simulation of the same world."""
+        """Go back (or forward) to ``snapshot``, taken in a simulation of the same world.
+
+        Raises:
+            InvalidInputError: It has other groups, sensors or radios.
+        """
+        if len(snapshot.parts) != len(self._owners()):
+            raise InvalidInputError(
+                "this snapshot was taken with other groups, sensors or radios; set up the same "
+                "before restoring it"
+            )
         self.step = snapshot.step
         self._set_physics_state(snapshot.physics)
         for owner, state in zip(self._owners(), snapshot.parts, strict=True):
@@ -262,7 +289,7 @@ class TickedSimulation(ABC):
 
     def _owners(self) -> Sequence[Any]:
         """Who has a state besides the physics, in the order of a snapshot's parts."""
-        return [*self.world.groups, *self._sensors]
+        return [*self.world.groups, *self._sensors, *self.radios.values()]
 
     @abstractmethod
     def poses_of(self, group: "Group") -> Array:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.geometry import Pinhole, look_at, rotation_matrix
 from mjmr.randomness import SampleNoise
-from mjmr.sensors.base import Sensor
+from mjmr.sensors.base import Sensor, carrier_body
 from mjmr.sensors.image_errors import GainField, PixelNoise
 
 if TYPE_CHECKING:
@@ -175,7 +175,7 @@ class Camera(Sensor):
             if self._pose is None:
                 raise InvalidInputError(f"the camera {key!r} has no place; give at or a position")
             position, rotation = self._pose
-            _carrier(spec, prefix, self._body).add_camera(
+            carrier_body(spec, prefix, self._body).add_camera(
                 name=name,
                 pos=position,
                 xyaxes=[*rotation[:, 0], *-rotation[:, 1]],
@@ -241,17 +241,6 @@ class Camera(Sensor):
         if not self._ids:
             self._ids = [model.camera(name).id for name in self._names]
         return self._ids
-
-
-def _carrier(spec: "mujoco.MjSpec", prefix: str, body: str) -> Any:
-    """The body called ``body`` of the robot with this prefix, or its first one."""
-    if not prefix:
-        return spec.worldbody
-    own = [b for b in spec.bodies if b.name.startswith(prefix)]
-    for candidate in own:
-        if not body or candidate.name == prefix + body:
-            return candidate
-    raise UnknownNameError("body of the robot", body, [b.name.removeprefix(prefix) for b in own])
 
 
 def _pose(position: Any, target: Any, quaternion: Any) -> tuple[Array, Array]:
