@@ -142,10 +142,8 @@ class Trace:
         ]
         # indices and sizes are exact as floats
         table = np.concatenate([np.empty((0, len(MESSAGE_COLUMNS))), *rows])
-        return {
-            name: table[:, k].astype(dtype)
-            for k, (name, dtype) in enumerate(MESSAGE_COLUMNS.items())
-        }
+        columns = zip(MESSAGE_COLUMNS.items(), table.T, strict=True)
+        return {name: column.astype(dtype) for (name, dtype), column in columns}
 
     def _contact_table(self, model: Any, k: int) -> dict[str, np.ndarray]:
         rows = self._contacts

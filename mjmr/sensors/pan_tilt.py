@@ -175,8 +175,8 @@ class PanTilt(Sensor):
         Args:
             camera: The camera at this unit, for its image.
             angles: Pan and tilt (2,) [rad].
-            pose: Of the robot (x, y, yaw) [m, m, rad]; the result is then in the frame of this pose,
-                the robot upright on the floor, otherwise in that of the robot's first body.
+            pose: Of the robot (x, y, yaw) [m, m, rad], upright on the floor: the result is in the
+                frame that pose is in. None: in the frame of the robot's first body.
         """
         transform = self.camera_poses(np.reshape(np.asarray(angles, dtype=np.float64), (1, 2)))[0]
         position, rotation = transform[:3, 3], transform[:3, :3]
