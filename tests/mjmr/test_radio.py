@@ -12,7 +12,7 @@ from mjmr.radio import Radio
 from mjmr.robots.pioneer2dx import Pioneer2DX
 from mjmr.robots.soccer_bot import SoccerBot
 from mjmr.simulation import Simulation
-from mjmr.statistics import wilson_interval
+from mjmr.statistics import proportion
 from mjmr.trace import Trace
 from mjmr.world import World
 from tests.mjmr.worlds import BOTH
@@ -130,8 +130,8 @@ def test_the_share_lost_is_the_one_stated(loss):
     for _ in simulation.ticks(PERIOD):
         pass
     kept, sent = int(radio.messages_received.sum()), 20 * 19 * 100
-    low, high = wilson_interval(kept, sent, 0.999)
-    assert low <= 1.0 - loss <= high
+    found = proportion(kept, sent, confidence=0.999)
+    assert found.low <= 1.0 - loss <= found.high
     assert radio.messages_sent.tolist() == [100] * 20
 
 
