@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.geometry import Pinhole, look_at, rotation_matrix
 from mjmr.randomness import SampleNoise
+from mjmr.robots.platform import FLOOR
 from mjmr.sensors.base import Sensor, carrier_body
 from mjmr.sensors.image_errors import GainField, PixelNoise
 
@@ -163,6 +164,11 @@ class Camera(Sensor):
     def add_to(self, spec: "mujoco.MjSpec", prefixes: Sequence[str], key: str) -> None:
         """Add a camera to the world or each robot, or check that the model has the one named."""
         taken = [c.name for c in spec.cameras]
+        if all(prefixes):
+            # the nearest thing drawn is some 2 cm away, not a hundredth of the hall: other robots
+            # come close; the floor is about half as long as the extent that znear is a share of
+            reach = float(max(spec.geom(FLOOR).size[:2]))
+            spec.visual.map.znear = min(spec.visual.map.znear, 0.01 / reach)
         for prefix in prefixes:
             name = f"{prefix}{self._at or key}"
             if self._at:

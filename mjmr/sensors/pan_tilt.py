@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mjmr.assets import model_path
 from mjmr.errors import InvalidInputError, UnknownNameError
-from mjmr.geometry import Pinhole, rotate
+from mjmr.geometry import Pinhole, rotation_matrix
 from mjmr.sensors.base import Sensor, carrier_body, physics_of
 
 if TYPE_CHECKING:
@@ -175,15 +175,24 @@ class PanTilt(Sensor):
         Args:
             camera: The camera at this unit, for its image.
             angles: Pan and tilt (2,) [rad].
-            pose: Of the robot (x, y, yaw) [m, m, rad], upright on the floor: the result is in the
-                frame that pose is in. None: in the frame of the robot's first body.
+            pose: Of the robot: (x, y, yaw) [m, m, rad], upright on the floor, or position and
+                quaternion (7,) with height and tilt; the result is in the frame that pose is in.
+                None: in the frame of the robot's first body.
+
+        Raises:
+            InvalidInputError: Angles or a pose of another shape.
         """
-        transform = self.camera_poses(np.reshape(np.asarray(angles, dtype=np.float64), (1, 2)))[0]
+        transform = self.camera_poses(np.asarray(angles, dtype=np.float64)[None])[0]
         position, rotation = transform[:3, 3], transform[:3, :3]
         if pose is not None:
-            x, y, yaw = np.asarray(pose, dtype=np.float64)
-            rotation = np.vstack([rotate(rotation[:2].T, yaw).T, rotation[2:]])
-            position = np.append(rotate(position[:2], yaw) + [x, y], position[2])
+            at = np.asarray(pose, dtype=np.float64)
+            if at.shape == (3,):
+                x, y, yaw = at
+                at = np.array([x, y, 0.0, math.cos(yaw / 2.0), 0.0, 0.0, math.sin(yaw / 2.0)])
+            if at.shape != (7,):
+                raise InvalidInputError(f"a pose has 3 numbers or 7; got shape {at.shape}")
+            turn = rotation_matrix(at[3:])
+            position, rotation = at[:3] + turn @ position, turn @ rotation
         image = camera.calibration
         return Pinhole(position, rotation, image.focal, image.width, image.height)
 
