@@ -168,24 +168,28 @@ def test_imu_noise_follows_its_density_and_biases_wander():
 # bumper
 
 
-def pressed(yaw, sectors=8, **options):
-    """Switches closed after a robot was pushed against the east wall, x outwards, at ``yaw``."""
+def pressed(yaw, sectors=8, wall=0.0, **options):
+    """Switches closed after a robot at ``yaw`` was pushed against the wall at the bearing ``wall``.
+
+    Both are in the world frame: 0 is the east wall, pi / 2 the north wall.
+    """
     world = World(bounds=[-2, -2, 2, 2], wall_height=0.3)
-    robots = world.add_group(SoccerBot, [[1.895, 0.0, yaw]])
+    robots = world.add_group(SoccerBot, [[1.895 * np.cos(wall), 1.895 * np.sin(wall), yaw]])
     robots.mount(Bumper(sectors=sectors, rate=10.0, **options))
     simulation = Simulation(world, control_period=0.1)
     for t in simulation.ticks(0.6):
-        east = min(t, 0.3)
-        robots.drive([[east * np.cos(yaw), -east * np.sin(yaw), 0.0]])
+        speed = min(t, 0.3)
+        robots.drive([[speed * np.cos(wall - yaw), speed * np.sin(wall - yaw), 0.0]])
     return robots.bumper.read()[0]
 
 
-@pytest.mark.parametrize("degrees", range(-170, 190, 20))
-def test_the_sector_that_meets_the_wall_closes(degrees):
-    """A round robot touches the wall at the bearing -yaw of its body."""
+@pytest.mark.parametrize("wall", [0.0, np.pi / 2, np.pi])
+@pytest.mark.parametrize("degrees", range(-170, 190, 40))
+def test_the_sector_that_meets_the_wall_closes(degrees, wall):
+    """A round robot touches the wall at the bearing ``wall - yaw`` of its body."""
     yaw = np.radians(degrees)
-    found = np.flatnonzero(pressed(yaw))
-    assert found.tolist() == [round(-yaw / (np.pi / 4)) % 8]
+    found = np.flatnonzero(pressed(yaw, wall=wall))
+    assert found.tolist() == [round((wall - yaw) / (np.pi / 4)) % 8]
 
 
 def test_sectors_start_where_they_are_told():
@@ -248,6 +252,28 @@ def test_a_short_bump_is_latched_until_the_next_sample_and_no_longer():
     assert hit[:3] == [False, True, False]
     assert not any(any(flags[1:]) for flags in latched)
     assert not any(seen)
+
+
+def test_a_snapshot_keeps_a_bump_that_was_not_yet_reported():
+    def build():
+        world = World(bounds=[-2, -2, 2, 2])
+        robots = world.add_group(SoccerBot, [[0.0, 0.0, 0.0]])
+        world.add_golf_ball(0.2, 0.0)
+        robots.mount(Bumper(rate=5.0))
+        return Simulation(world, control_period=0.1), robots.bumper
+
+    simulation, bumper = build()
+    simulation.data.qvel[simulation.model.joint("ball0").dofadr] = -2.0
+    for _ in simulation.ticks(0.1):
+        pass
+    assert not bumper.read().any()
+    snapshot = simulation.snapshot()
+    other, again = build()
+    other.restore(snapshot)
+    for _ in other.ticks(0.1):
+        pass
+    assert again.read()[0].tolist() == [True] + [False] * 7
+    assert other.truth.poses(other.world.groups[0]).shape == (1, 3)
 
 
 def test_both_robots_feel_a_push_and_neither_feels_the_floor_or_a_third():

@@ -230,6 +230,22 @@ def test_a_snapshot_taken_in_mid_flight_goes_on(kind):
     assert counts(other) == after
 
 
+def test_after_a_restore_positions_are_looked_at_afresh():
+    simulation, radio, groups = row(2, range=1.5)
+    snapshot = simulation.snapshot()
+
+    def speak_after(speed):
+        for k, _ in enumerate(simulation.ticks(1.2)):
+            groups[0].drive([[speed, 0.0, 0.0]])
+            if k == 10:
+                radio.broadcast(0, b"x")
+        return len(radio.receive(1))
+
+    assert speak_after(-1.0) == 0
+    simulation.restore(snapshot)
+    assert speak_after(0.0) == 1
+
+
 def test_a_snapshot_needs_the_same_radios():
     simulation, _, _ = row(2)
     snapshot = simulation.snapshot()
