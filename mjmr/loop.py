@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError, TruthError, UnknownNameError
 from mjmr.randomness import Streams
+from mjmr.sensors.base import Actuated
 from mjmr.team import Team
 from mjmr.watch import announce
 
@@ -97,6 +98,7 @@ class TickedSimulation(ABC):
         notes: What was noted last; see :meth:`note`.
         caption: Returns a line of text for films; it may read truth.
         diverged: True once the physics has left the plausible range.
+        actuated: Sensors that move parts of the robots.
         radios: By name, in the order they were set up.
         message_followers: Called by radios with every message: when sent [s], when delivered (k,)
             [s] or NaN, sender, receivers (k,), bytes. For traces.
@@ -122,6 +124,7 @@ class TickedSimulation(ABC):
         self.notes: dict[str, Array] = {}
         self.caption: Callable[[], str] = str
         self.diverged = False
+        self.actuated: list[Actuated] = []
         self.radios: dict[str, Radio] = {}
         self.message_followers: list[Callable[[float, Array, int, Any, int], None]] = []
         self._observers: list[Callable[[], None]] = []
@@ -139,6 +142,7 @@ class TickedSimulation(ABC):
             sensor.bind(self, None, f"world/{name}")
         self._sensors: list[Sensor] = [s for g in self.world.groups for s in g.sensors.values()]
         self._sensors.extend(self.world.sensors.values())
+        self.actuated.extend(s for s in self._sensors if isinstance(s, Actuated))
         announce(self)
 
     def note(self, **arrays: ArrayLike) -> None:
@@ -323,6 +327,10 @@ class TickedSimulation(ABC):
     def full_positions(self) -> Array | None:
         """Every coordinate of the physics (nq,), a copy; None if there is none but the poses."""
         return None
+
+    def moved_parts(self) -> tuple[Any, ...]:
+        """Where the parts are that sensors move, in the order of ``actuated``."""
+        return tuple(sensor.observe(self.time) for sensor in self.actuated)
 
     @abstractmethod
     def visible_state(self) -> Any:

@@ -15,7 +15,6 @@ from mjmr.guard import plausible
 from mjmr.last_second import LastSecond
 from mjmr.loop import Snapshot, TickedSimulation
 from mjmr.robots.platform import FramedDrive, TiltedDrive
-from mjmr.sensors.base import Actuated
 from mjmr.start_check import check_start
 
 if TYPE_CHECKING:
@@ -113,7 +112,6 @@ class Simulation(TickedSimulation):
         self.last_second = LastSecond(self.model, self.data, self.control_period)
         self.last_second.keep(0.0)
         self._bind()
-        self._actuated = [s for s in self._sensors if isinstance(s, Actuated)]
 
     def poses_of(self, group: "Group") -> Array:
         """True poses (n, 3)."""
@@ -171,7 +169,7 @@ class Simulation(TickedSimulation):
         for group, drive in self._each:
             start, target = group.next_ramp(time, period)
             drive.ramp(data, start, target, period)
-        for sensor in self._actuated:
+        for sensor in self.actuated:
             sensor.actuate(data, period)
         if self._carts is not None:
             self._carts.drive(data, time, period)

@@ -32,8 +32,19 @@ class _Sample:
 class Actuated(Protocol):
     """What a sensor has besides if it moves parts of the robot, as a pan-tilt unit does."""
 
-    def actuate(self, data: "mujoco.MjData", period: float) -> None:
-        """Set its actuators for the control period [s] that begins; called by Simulation."""
+    def actuate(self, data: "mujoco.MjData | None", period: float) -> None:
+        """Set its actuators for the control period [s] that begins; called by simulations.
+
+        ``data`` is None in a kinematic simulation.
+        """
+        ...
+
+    def observe(self, time: float) -> Any:
+        """Where its parts are at ``time`` [s], now; a copy."""
+        ...
+
+    def place(self, data: "mujoco.MjData", parts: Any) -> None:
+        """Put its parts as :meth:`observe` told, for pictures of kinematic simulations."""
         ...
 
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from mjmr.assets import model_path
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.geometry import Pinhole, rotation_matrix
-from mjmr.sensors.base import Sensor, carrier_body, physics_of
+from mjmr.sensors.base import Sensor, carrier_body
 
 if TYPE_CHECKING:
     import mujoco
@@ -35,7 +35,7 @@ class PanTilt(Sensor):
     those are used, the actuators' set points as rate-limited as here; angles then count as the
     model's joints do, and the camera is called what the model calls it.
 
-    It is moved by servos, so it needs :class:`mjmr.simulation.Simulation`.
+    In a kinematic simulation it moves exactly as fast as it can.
 
     Attributes:
         clamped: Aims cut to the angles the unit can reach so far, shape (n,).
@@ -256,14 +256,14 @@ class PanTilt(Sensor):
         """Look up joints, servos and limits; nothing is random."""
         import mujoco
 
-        simulation = physics_of(self, group)
-        model = simulation.model
+        simulation: Any = self._simulation
+        self._data: Any = getattr(simulation, "data", None)
+        model = simulation.studio.model if self._data is None else simulation.model
         key = next(key for key, sensor in group.sensors.items() if sensor is self)
         added = f"{group.prefixes[0]}{key}/" in {
             model.joint(i).name.removesuffix("pan") for i in range(model.njnt)
         }
         units = [f"{p}{key}/" if added else p for p in group.prefixes]
-        self._data: Any = simulation.data
         self._angles = np.array([[model.joint(u + a).qposadr[0] for a in AXES] for u in units])
         self._servos = np.array([[model.actuator(u + a).id for a in AXES] for u in units])
         self._points = model.actuator_actadr[self._servos]
@@ -271,20 +271,35 @@ class PanTilt(Sensor):
         self._low, self._high = model.actuator_actrange[first].T
         self._fastest = model.actuator_ctrlrange[first, 1]
         self._goal = np.tile(np.clip(0.0, self._low, self._high), (group.n, 1))
+        # of a kinematic simulation: angles, rates, and the instant they hold from
+        self._motion = np.zeros((group.n, 2)), np.zeros((group.n, 2)), 0.0
         self.clamped = np.zeros(group.n, dtype=np.int64)
         data = mujoco.MjData(model)
         mujoco.mj_kinematics(model, data)
         mujoco.mj_camlight(model, data)
         self._chain = _chain(model, data, group.prefixes[0], units[0])
 
-    def actuate(self, data: "mujoco.MjData", period: float) -> None:
+    def actuate(self, data: "mujoco.MjData | None", period: float) -> None:
         """Let the set points go towards what was aimed at during the period that begins."""
-        rates = (self._goal - data.act[self._points]) / period
-        data.ctrl[self._servos] = np.clip(rates, -self._fastest, self._fastest)
+        assert self._simulation is not None
+        time = self._simulation.time
+        at = self.observe(time) if data is None else data.act[self._points]
+        rates = np.clip((self._goal - at) / period, -self._fastest, self._fastest)
+        if data is None:
+            self._motion = at, rates, time
+        else:
+            data.ctrl[self._servos] = rates
 
-    def observe(self, time: float) -> Any:
+    def observe(self, time: float) -> Array:
         """Angles now (n, 2)."""
-        return self._data.qpos[self._angles]
+        if self._data is not None:
+            return self._data.qpos[self._angles]
+        angles, rates, since = self._motion
+        return angles + rates * (time - since)
+
+    def place(self, data: "mujoco.MjData", parts: Array) -> None:
+        """Put the units at angles (n, 2), for pictures."""
+        data.qpos[self._angles] = parts
 
     def compute(self, state: Any, number: int) -> Array:
         """Whole steps."""
@@ -296,13 +311,13 @@ class PanTilt(Sensor):
 
     def state(self) -> Any:
         """What the unit remembers, for snapshots."""
-        return super().state(), self._goal.copy(), self.clamped.copy()
+        return super().state(), self._goal, self._motion, self.clamped.copy()
 
     def set_state(self, state: Any) -> None:
         """Put back what :meth:`state` returned."""
-        samples, goal, clamped = state
+        samples, self._goal, self._motion, clamped = state
         super().set_state(samples)
-        self._goal, self.clamped = goal.copy(), clamped.copy()
+        self.clamped = clamped.copy()
 
     def _in_simulation(self) -> None:
         if self._simulation is None:

@@ -9,12 +9,14 @@ from scipy.stats import qmc
 from mjmr.assets import model_path
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.kinematics import KinematicSimulation
+from mjmr.recording import Recording
 from mjmr.robots.pioneer2dx import Pioneer2DX
 from mjmr.sensors.camera import Camera
 from mjmr.sensors.pan_tilt import PanTilt
 from mjmr.simulation import Simulation
 from mjmr.world import World
 from tests.mjmr.test_camera import depth_by_rays, spots
+from tests.mjmr.worlds import BOTH
 
 LIMITS = np.radians([[-100, 100], [-25, 25]])
 RATES = np.radians([80.0, 50.0])
@@ -86,6 +88,36 @@ def test_it_turns_as_fast_as_the_real_one_and_no_further(dt_max, period):
     assert robots.pan_tilt.clamped.tolist() == [round(5.0 / period)] * 2
 
 
+@pytest.mark.parametrize("kind", BOTH)
+@pytest.mark.parametrize("period", [0.1, 0.03])
+def test_both_simulations_turn_it_alike(kind, period):
+    """Exact in the kinematic one, some 40 ms late and within a step at rest in the other."""
+    world, robots = pioneers(unit=PanTilt(rate=50.0))
+    simulation = kind(world, control_period=period)
+    late = 0.05 if kind is Simulation else 1e-9
+    for t in simulation.ticks(2.4):
+        wanted = np.minimum(RATES * robots.pan_tilt.sampled_at, [1.5, 0.4])
+        off = wanted - robots.pan_tilt.read()[0]
+        assert (off >= -STEPS / 2 - 1e-9).all()
+        assert (off <= STEPS / 2 + late * RATES).all()
+        if t > 1.5:
+            assert np.abs(off).max() <= STEPS.max() / 2 + 1e-4
+        robots.pan_tilt.aim(1.5, 0.4)
+
+
+def test_a_recording_of_a_kinematic_simulation_shows_the_turn():
+    world, robots = pioneers([[0.0, 0.0, 0.0], [2.0, 0.0, 1.0]])
+    simulation = KinematicSimulation(world, control_period=0.1)
+    recording = Recording(simulation)
+    for _ in simulation.ticks(1.0):
+        robots.pan_tilt.aim([0.5, -0.3], 0.2)
+    footage = recording.footage()
+    joints = [f"{p}pan_tilt/{a}" for p in robots.prefixes for a in ("pan", "tilt")]
+    columns = [footage.model.joint(name).qposadr[0] for name in joints]
+    np.testing.assert_allclose(footage.positions[-1, columns], [0.5, 0.2, -0.3, 0.2])
+    np.testing.assert_allclose(footage.positions[0, columns], 0.0)
+
+
 def test_a_small_turn_settles_within_a_step():
     world, robots = pioneers()
     simulation = Simulation(world, control_period=0.1)
@@ -154,8 +186,9 @@ def test_camera_poses_are_those_of_the_physics():
 AIMS = [(0.0, 0.0), (0.9, 0.3), (-1.3, -0.2)]
 
 
+@pytest.mark.parametrize("kind", BOTH)
 @pytest.mark.parametrize("aim", AIMS)
-def test_points_are_found_where_they_are_projected(aim):
+def test_points_are_found_where_they_are_projected(aim, kind):
     """Spheres of 10 mm, by OpenCV, at the angles the unit reports: within a pixel."""
     poses = np.array([[0.5, -0.5, 0.7], [-3.0, 1.0, -2.5]])
     world, robots = pioneers(poses, width=640, height=480, rate=10.0)
@@ -170,11 +203,15 @@ def test_points_are_found_where_they_are_projected(aim):
         points.append(local @ [[c, s, 0], [-s, c, 0], [0, 0, 1]] + [x, y, 0])
     world, robots = pioneers(poses, width=640, height=480, rate=10.0)
     world.edit(lambda spec: [add_spot(spec, p) for p in np.concatenate(points)])
-    simulation = Simulation(world, control_period=0.1)
+    simulation = kind(world, control_period=0.1)
     for _ in simulation.ticks(3.0):
         robots.pan_tilt.aim(*aim)
-    bases = simulation.base_poses_of(robots)
-    for i, image in enumerate(robots.camera.read()):
+    images = robots.camera.read()
+    # as pictured: a kinematic simulation shows robots as deep and as tilted as contact carries them
+    scene = simulation.data if kind is Simulation else simulation.studio._data
+    bodies = [scene.body(f"{prefix}base") for prefix in robots.prefixes]
+    bases = [np.concatenate([b.xpos, b.xquat]) for b in bodies]
+    for i, image in enumerate(images):
         view = robots.pan_tilt.pinhole(robots.camera, robots.pan_tilt.read()[i], bases[i])
         wanted = view.project(points[i])
         found = spots(image)
@@ -293,18 +330,20 @@ def test_it_survives_halton_noise_without_a_warning(start):
     assert np.ptp(pans) > 0
 
 
-def test_same_bits_and_a_snapshot_goes_on():
+@pytest.mark.parametrize("kind", BOTH)
+def test_same_bits_and_a_snapshot_goes_on(kind):
     def run(simulation, robots, seconds):
         found = []
         for _ in simulation.ticks(seconds):
             found.append(robots.pan_tilt.read().tobytes())
             if 0.4 < simulation.time < 0.6:
                 robots.pan_tilt.aim([3.0, 0.5], 0.2)
-        return found, simulation.data.qpos.tobytes(), robots.pan_tilt.clamped.tolist()
+        state = simulation._physics_state().tobytes(), simulation.moved_parts()[0].tobytes()
+        return found, *state, robots.pan_tilt.clamped.tolist()
 
     def fresh():
         world, robots = pioneers([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0]])
-        return Simulation(world, control_period=0.05), robots
+        return kind(world, control_period=0.05), robots
 
     whole = run(*fresh(), 2.0)
     simulation, robots = fresh()
@@ -367,8 +406,6 @@ def test_places_it_cannot_stand_are_refused():
     with pytest.raises(UnknownNameError, match="'roof'; valid: .*camera"):
         Simulation(world)
     world, robots = pioneers()
-    with pytest.raises(InvalidInputError, match="'pan_tilt' in a KinematicSimulation"):
-        KinematicSimulation(world)
     with pytest.raises(InvalidInputError, match="named 'pan_tilt' already"):
         robots.mount(PanTilt(site="lidar"))
     world = World(bounds=[-8, -8, 8, 8])
