@@ -103,7 +103,8 @@ class Radio:
             latency: [s].
             loss: Probability that an addressee in reach does not hear a message.
             visible: Called when something is sent, for (n, n) flags over the team, sender first:
-                whether the line between two robots is free; None: waves go through everything.
+                whether a line of sight between two robots is free, to be read from the simulation,
+                not from its guarded truth; None: waves go through everything.
             inbox: Messages a robot keeps until it reads them.
             name: Of the radio and its random stream.
 

@@ -84,6 +84,11 @@ class Bumper(Sensor):
         """
         return super().read()
 
+    @property
+    def reading_bounds(self) -> tuple[bool, bool]:
+        """Least and largest value of a reading."""
+        return False, True
+
     def prepare(self, sequence: np.random.SeedSequence, group: "Group") -> None:
         """Find out which shapes belong to whom; nothing is random.
 

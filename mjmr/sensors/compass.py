@@ -52,6 +52,11 @@ class Compass(Sensor):
         """
         return super().read()
 
+    @property
+    def reading_bounds(self) -> tuple[float, float]:
+        """Least and largest value of a reading."""
+        return -np.pi, np.pi
+
     def prepare(self, sequence: np.random.SeedSequence, group: "Group") -> None:
         """Set up the noise stream, and draw the biases."""
         noise, bias = sequence.spawn(2)

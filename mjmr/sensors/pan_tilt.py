@@ -145,6 +145,12 @@ class PanTilt(Sensor):
         """
         return super().read()
 
+    @property
+    def reading_bounds(self) -> tuple[Array, Array]:
+        """Least and largest pan and tilt that :meth:`read` can return, (2,) each [rad]."""
+        self._in_simulation()
+        return self._low - self._steps / 2.0, self._high + self._steps / 2.0
+
     def camera_poses(self, angles: ArrayLike) -> Array:
         """Poses of the unit's camera at given angles, in the frame of the robots' first body.
 
