@@ -254,6 +254,7 @@ class PanTilt(Sensor):
                     f"{joint.range[1]:g} rad; got {low:g} to {high:g}"
                 )
             actuator.dyntype = mujoco.mjtDyn.mjDYN_INTEGRATOR
+            actuator.inheritrange = 0.0  # it would undo the range set here
             actuator.actlimited, actuator.actrange = 1, [low, high]
             actuator.ctrllimited, actuator.ctrlrange = 1, [-top, top]
             actuator.actearly = True

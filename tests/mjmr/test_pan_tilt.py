@@ -259,10 +259,9 @@ class OwnUnit(Pioneer2DX):
                           contype=0, conaffinity=0, group=1)  # fmt: skip
             body.add_joint(name=joint, axis=axis, range=[-limit, limit], limited=1, armature=0.01)
             servo = spec.add_actuator(
-                name=joint, target=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT,
-                ctrllimited=1, ctrlrange=[-limit, limit],
+                name=joint, target=joint, trntype=mujoco.mjtTrn.mjTRN_JOINT
             )  # fmt: skip
-            servo.set_to_position(kp=20.0, kv=0.8)
+            servo.set_to_position(kp=20.0, kv=0.8, inheritrange=1.0)
         body.add_camera(name="eye", pos=[0.05, 0, 0], xyaxes=[0, -1, 0, 0, 0, 1])
         return spec
 
