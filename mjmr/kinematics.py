@@ -76,9 +76,9 @@ class KinematicSimulation(TickedSimulation):
         rows = [cart.box(cart.along(self.time)[0]) for _, cart in self.world.carts]
         return np.array(rows).reshape(-1, 5)
 
-    def visible_state(self) -> tuple[float, Array, tuple[Any, ...]]:
-        """Time, which places the carts, poses of the whole team (n, 3), and parts that turn."""
-        return self.time, self._pose.copy(), self.moved_parts()
+    def visible_state(self) -> tuple[Any, ...]:
+        """Time, which places the carts, poses of the whole team (n, 3), and parts that move."""
+        return self.time, self._pose.copy(), *self.moved_parts()
 
     def _begin_period(self) -> None:
         team, time, period = self.team, self.time, self.control_period

@@ -49,10 +49,10 @@ class Studio:
         """Put the scene as it was when ``simulation.visible_state()`` returned ``state``."""
         data, model = self._data, self.model
         if self._drives:
-            time, poses, parts = state
+            time, poses, *parts = state
             for rows, drive in self._drives:
                 drive.place(data, poses[rows])
-            for sensor, moved in zip(self._actuated, parts, strict=True):
+            for sensor, moved in zip(self._actuated, parts, strict=False):
                 sensor.place(data, moved)
             self._carts.place(data, time)
         else:
