@@ -67,6 +67,14 @@ class FaultSchedule:
         """Robots no localizer reports at ``time`` [s], shape (n,); None when there are none."""
         return self._mask(("reports-lost",), time)
 
+    def silent(self, time: float) -> NDArray[np.bool_] | None:
+        """Robots whose radio sends nothing at ``time`` [s], shape (n,); None if there are none."""
+        return self._mask(("dead",), time)
+
+    def deaf(self, time: float) -> NDArray[np.bool_] | None:
+        """Robots whose radio hears nothing at ``time`` [s], shape (n,); None if there are none."""
+        return self._mask(("dead", "commands-lost"), time)
+
     def _mask(self, kinds: tuple[str, ...], time: float) -> NDArray[np.bool_] | None:
         if not self._faults:
             return None

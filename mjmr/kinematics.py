@@ -3,7 +3,7 @@
 It serves what a paper itself simulated without dynamics; every table names it where it was used.
 """
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,9 +77,9 @@ class KinematicSimulation(TickedSimulation):
         rows = [cart.box(cart.along(self.time)[0]) for _, cart in self.world.carts]
         return np.array(rows).reshape(-1, 5)
 
-    def visible_state(self) -> tuple[float, Array]:
-        """Time, which places the carts, and poses of the whole team (n, 3)."""
-        return self.time, self._pose.copy()
+    def visible_state(self) -> tuple[Any, ...]:
+        """Time, which places the carts, poses of the whole team (n, 3), and parts that move."""
+        return self.time, self._pose.copy(), *self.moved_parts()
 
     def _begin_period(self) -> None:
         team, time, period = self.team, self.time, self.control_period
@@ -93,6 +93,8 @@ class KinematicSimulation(TickedSimulation):
         self._pace = team.stack([p.pace_of(start) for p, (start, _) in pairs])
         self._pace_target = team.stack([p.pace_of(target) for p, (_, target) in pairs])
         self._pace_rate = (self._pace_target - self._pace) / period
+        for sensor in self.actuated:
+            sensor.actuate(None, period)
 
     def _advance(self, steps: int) -> None:
         dt = self.control_period if steps == self.substeps else steps * self.timestep

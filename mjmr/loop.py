@@ -11,11 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError, TruthError, UnknownNameError
 from mjmr.randomness import Streams
+from mjmr.sensors.base import Actuated
 from mjmr.team import Team
 from mjmr.watch import announce
 
 if TYPE_CHECKING:
     from mjmr.group import Group
+    from mjmr.radio import Radio
     from mjmr.sensors.base import Sensor
     from mjmr.sensors.studio import Studio
     from mjmr.world import World
@@ -96,6 +98,10 @@ class TickedSimulation(ABC):
         notes: What was noted last; see :meth:`note`.
         caption: Returns a line of text for films; it may read truth.
         diverged: True once the physics has left the plausible range.
+        actuated: Sensors that move parts of the robots.
+        radios: By name, in the order they were set up.
+        message_followers: Called by radios with every message: when sent [s], when delivered (k,)
+            [s] or NaN, sender, receivers (k,), bytes. For traces.
     """
 
     def __init__(
@@ -118,6 +124,9 @@ class TickedSimulation(ABC):
         self.notes: dict[str, Array] = {}
         self.caption: Callable[[], str] = str
         self.diverged = False
+        self.actuated: list[Actuated] = []
+        self.radios: dict[str, Radio] = {}
+        self.message_followers: list[Callable[[float, Array, int, Any, int], None]] = []
         self._observers: list[Callable[[], None]] = []
         self._started = False
         self._studio: Studio | None = None
@@ -133,6 +142,7 @@ class TickedSimulation(ABC):
             sensor.bind(self, None, f"world/{name}")
         self._sensors: list[Sensor] = [s for g in self.world.groups for s in g.sensors.values()]
         self._sensors.extend(self.world.sensors.values())
+        self.actuated.extend(s for s in self._sensors if isinstance(s, Actuated))
         announce(self)
 
     def note(self, **arrays: ArrayLike) -> None:
@@ -160,6 +170,18 @@ class TickedSimulation(ABC):
                 )
             fresh[key] = array
         self.notes = fresh
+
+    def add_radio(self, radio: "Radio") -> None:
+        """Make a radio part of snapshots; it calls this itself.
+
+        Raises:
+            InvalidInputError: There is one of that name already.
+        """
+        if radio.name in self.radios:
+            raise InvalidInputError(
+                f"this simulation has a radio named {radio.name!r} already; name the other one"
+            )
+        self.radios[radio.name] = radio
 
     @property
     def time(self) -> float:
@@ -254,7 +276,16 @@ class TickedSimulation(ABC):
         return Snapshot(self.time, self.step, self._physics_state(), parts)
 
     def restore(self, snapshot: Snapshot) -> None:
-        """Go back (or forward) to ``snapshot``, taken in a simulation of the same world."""
+        """Go back (or forward) to ``snapshot``, taken in a simulation of the same world.
+
+        Raises:
+            InvalidInputError: It has other groups, sensors or radios.
+        """
+        if len(snapshot.parts) != len(self._owners()):
+            raise InvalidInputError(
+                "this snapshot was taken with other groups, sensors or radios; set up the same "
+                "before restoring it"
+            )
         self.step = snapshot.step
         self._set_physics_state(snapshot.physics)
         for owner, state in zip(self._owners(), snapshot.parts, strict=True):
@@ -262,7 +293,7 @@ class TickedSimulation(ABC):
 
     def _owners(self) -> Sequence[Any]:
         """Who has a state besides the physics, in the order of a snapshot's parts."""
-        return [*self.world.groups, *self._sensors]
+        return [*self.world.groups, *self._sensors, *self.radios.values()]
 
     @abstractmethod
     def poses_of(self, group: "Group") -> Array:
@@ -297,6 +328,10 @@ class TickedSimulation(ABC):
     def full_positions(self) -> Array | None:
         """Every coordinate of the physics (nq,), a copy; None if there is none but the poses."""
         return None
+
+    def moved_parts(self) -> tuple[Any, ...]:
+        """Where the parts are that sensors move, in the order of ``actuated``."""
+        return tuple(sensor.observe(self.time) for sensor in self.actuated)
 
     @abstractmethod
     def visible_state(self) -> Any:

@@ -64,3 +64,40 @@ class SampleNoise:
             block = draw.standard_normal(size) if self._kind == "normal" else draw.random(size)
             self._block, self._index = block, index
         return self._block[:, offset]
+
+
+class Drift:
+    """A bias that wanders: a stationary first-order Gauss-Markov process, deviation 1.
+
+    Its correlation falls to 1/e over the correlation time. Sample ``k`` depends on (stream, row, k)
+    alone: whoever skips samples or goes back gets the same ones.
+    """
+
+    _BLOCK = 64
+
+    def __init__(self, sequence: np.random.SeedSequence, shape: tuple[int, ...], keep: float):
+        """Prepare.
+
+        Args:
+            sequence: The stream.
+            shape: Shape of one sample, rows (robots) first.
+            keep: Correlation of two samples in a row, ``exp(-period / correlation time)``.
+        """
+        self._noise = SampleNoise(sequence, shape, "normal")
+        self._keep, self._kick = keep, (1.0 - keep**2) ** 0.5
+        self._starts: list[np.ndarray] = []  # of every block passed so far
+        self._value, self._number = np.empty(shape), -1
+
+    def sample(self, number: int) -> np.ndarray:
+        """Sample ``number``, shape ``shape``; not to be written to."""
+        block = min(number // self._BLOCK, len(self._starts) - 1)
+        if block >= 0 and not block * self._BLOCK <= self._number <= number:
+            self._value, self._number = self._starts[block], block * self._BLOCK
+        while self._number < number:
+            self._number += 1
+            fresh = self._noise.sample(self._number)
+            first = self._number == 0
+            self._value = fresh.copy() if first else self._keep * self._value + self._kick * fresh
+            if self._number == len(self._starts) * self._BLOCK:
+                self._starts.append(self._value)
+        return self._value

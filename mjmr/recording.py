@@ -41,6 +41,7 @@ class Recording:
         self._poses: list[Array] = []
         self._movers: list[Array] = []
         self._positions: list[Array] = []
+        self._parts: list[tuple[Any, ...]] = []
         self._notes: list[dict[str, Array]] = []
         self._captions: list[str] = []
         self._caption = caption
@@ -59,6 +60,8 @@ class Recording:
         positions = simulation.full_positions()
         if positions is not None:
             self._positions.append(positions)
+        else:
+            self._parts.append(simulation.moved_parts())
         self._notes.append(simulation.notes)
         self._captions.append((self._caption or simulation.caption)())
 
@@ -125,6 +128,8 @@ class Recording:
                 drive.place(data, poses[rows])
             data.qpos[props] = movers
             carts.place(data, self._times[k])
+            for sensor, moved in zip(self._simulation.actuated, self._parts[k], strict=True):
+                sensor.place(data, moved)
             positions[k] = data.qpos
         return positions
 

@@ -174,6 +174,8 @@ class Simulation(TickedSimulation):
         for group, drive in self._each:
             start, target = group.next_ramp(time, period)
             drive.ramp(data, start, target, period)
+        for sensor in self.actuated:
+            sensor.actuate(data, period)
         if self._carts is not None:
             self._carts.drive(data, time, period)
 

@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 ENDINGS = (".npz", ".parquet")
 LARGEST_SAMPLE = 16_384  # numbers; a camera's pictures are more
-# No robot has a radio yet, so the table is always empty; these are the columns it will have.
+# a row for every robot a message is for
 MESSAGE_COLUMNS = {
     "message_sent": np.float64,  # [s]
     "message_delivered": np.float64,  # [s]; NaN: lost
     "message_sender": np.int64,  # index in the team
-    "message_receiver": np.int64,
+    "message_receiver": np.int64,  # -1: a broadcast out of everybody's reach
     "message_bytes": np.int64,
 }
 _CONTACT_COLUMNS: dict[str, tuple[Any, tuple[int, ...]]] = {
@@ -70,6 +70,8 @@ class Trace:
         self._samples: dict[str, list[tuple[int, float, float, Array]]] = {}
         for name, sensor, _ in _sensors(simulation):
             self._follow(name, sensor)
+        self._messages: list[tuple[float, Array, int, Any, int]] = []
+        simulation.message_followers.append(lambda *message: self._messages.append(message))
         simulation.observe(self._capture)
 
     def _follow(self, name: str, sensor: Any) -> None:
@@ -131,7 +133,17 @@ class Trace:
             found[f"sensor_{name}_sampled"] = np.array([s[1] for s in samples])
             found[f"sensor_{name}_delivered"] = np.array([s[2] for s in samples])
             found[f"sensor_{name}_values"] = np.array([s[3] for s in samples])
-        return found | {name: np.empty(0, dtype) for name, dtype in MESSAGE_COLUMNS.items()}
+        return found | self._message_table()
+
+    def _message_table(self) -> dict[str, np.ndarray]:
+        rows = [
+            np.column_stack(np.broadcast_arrays(sent, delivered, sender, receivers, size))
+            for sent, delivered, sender, receivers, size in self._messages
+        ]
+        # indices and sizes are exact as floats
+        table = np.concatenate([np.empty((0, len(MESSAGE_COLUMNS))), *rows])
+        columns = zip(MESSAGE_COLUMNS.items(), table.T, strict=True)
+        return {name: column.astype(dtype) for (name, dtype), column in columns}
 
     def _contact_table(self, model: Any, k: int) -> dict[str, np.ndarray]:
         rows = self._contacts
@@ -204,23 +216,16 @@ def check_ending(path: Path) -> None:
 
 def _contacts(simulation: Any) -> dict[str, np.ndarray]:
     """Contacts the last physics step worked with, and the normal forces it found [N]."""
-    import mujoco
+    from mjmr.contacts import normal_forces
 
     model, data = simulation.model, simulation.data
     contact = data.contact
     geoms = contact.geom.copy()
-    # a normal force is one number in an elliptic cone, and the sum of a pyramid's edges
-    pyramid = model.opt.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL
-    rows = np.where((contact.dim > 1) & pyramid, 2 * (contact.dim - 1), 1)
-    forces = [
-        data.efc_force[first : first + count].sum() if first >= 0 else 0.0
-        for first, count in zip(contact.efc_address, rows, strict=True)
-    ]
     return {
         "contact_geoms": geoms,
         # a flex has no geom and is -1
         "contact_bodies": np.where(geoms >= 0, model.geom_bodyid[geoms], -1),
         "contact_positions": contact.pos.copy(),
         "contact_distances": contact.dist.copy(),
-        "contact_forces": np.array(forces),
+        "contact_forces": normal_forces(model, data),
     }

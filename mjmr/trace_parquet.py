@@ -55,6 +55,7 @@ def pack_parquet(head: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> b
     for name in [n for n in arrays if n.startswith("sensor_") and n.endswith("_values")]:
         _add_samples(rows, name.removesuffix("_values"), head["sensors"], arrays)
     _add_contacts(rows, arrays)
+    _add_messages(rows, robots, arrays)
     table = rows.table(pa)
     captions = {
         "time": times,
@@ -103,6 +104,20 @@ def _add_contacts(rows: "_Rows", arrays: Mapping[str, np.ndarray]) -> None:
     rows.add("contact", times, [""], fields, values[:, None], source=source, number=number)
 
 
+def _add_messages(rows: "_Rows", robots: Sequence[str], arrays: Mapping[str, np.ndarray]) -> None:
+    names = np.array([*robots, ""])  # -1 is the last
+    rows.add(
+        "message",
+        arrays["message_sent"],
+        [""],
+        ("bytes",),
+        arrays["message_bytes"][:, None, None],
+        source=names[arrays["message_sender"]],
+        delivered=arrays["message_delivered"],
+        robot=names[arrays["message_receiver"]],
+    )
+
+
 class _Rows:
     """Blocks of rows (instants, robots, fields), laid out long."""
 
@@ -119,8 +134,12 @@ class _Rows:
         source: str | np.ndarray = "",
         number: np.ndarray | None = None,
         delivered: np.ndarray | None = None,
+        robot: np.ndarray | None = None,
     ) -> None:
-        """Add values (k, robots, fields); source, number and delivered go with the instants."""
+        """Add values (k, robots, fields); what follows them goes with the instants.
+
+        ``robot`` is there for rows whose robot is not the same at every instant.
+        """
         k, n, m = values.shape
         spread = np.repeat(np.arange(k), n * m)
         self._blocks.append(
@@ -128,7 +147,9 @@ class _Rows:
                 "time": times[spread],
                 "kind": np.full(k * n * m, kind),
                 "source": np.broadcast_to(source, k)[spread],
-                "robot": np.tile(np.repeat(np.array(robots), m), k),
+                "robot": np.tile(np.repeat(np.array(robots), m), k)
+                if robot is None
+                else robot[spread],
                 "field": np.tile(np.array(fields), k * n),
                 "number": None if number is None else number[spread],
                 "delivered": None if delivered is None else delivered[spread],

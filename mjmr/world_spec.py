@@ -30,6 +30,7 @@ def build_spec(world: "World") -> mujoco.MjSpec:
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     spec.option.impratio = 10.0
+    spec.visual.map.znear = 0.01
     _materials(spec, world)
     _lights_and_overview(spec, world)
     _floor(spec, world)
@@ -53,7 +54,6 @@ def build_spec(world: "World") -> mujoco.MjSpec:
     spec.visual.headlight.ambient = [glow] * 3
     spec.visual.headlight.diffuse = [0.0 if world.lighting == "uneven" else 0.25] * 3
     spec.visual.headlight.specular = [0.0, 0.0, 0.0]
-    spec.visual.map.znear = 0.01
     return spec
 
 

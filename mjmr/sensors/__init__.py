@@ -1,10 +1,27 @@
 """What robots perceive: sampled on schedule, computed when read."""
 
 from mjmr.sensors.base import Sensor
+from mjmr.sensors.bumper import Bumper
 from mjmr.sensors.cable_tension import CableTension
 from mjmr.sensors.camera import Camera
 from mjmr.sensors.cart_report import CartReport
+from mjmr.sensors.compass import Compass
 from mjmr.sensors.encoders import WheelEncoders
+from mjmr.sensors.force_torque import ForceTorque
+from mjmr.sensors.imu import IMU
 from mjmr.sensors.localizer import Localizer
+from mjmr.sensors.pan_tilt import PanTilt
 
-__all__ = ["CableTension", "Camera", "CartReport", "Localizer", "Sensor", "WheelEncoders"]
+__all__ = [
+    "Bumper",
+    "CableTension",
+    "Camera",
+    "CartReport",
+    "Compass",
+    "ForceTorque",
+    "IMU",
+    "Localizer",
+    "PanTilt",
+    "Sensor",
+    "WheelEncoders",
+]

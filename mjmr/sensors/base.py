@@ -5,12 +5,12 @@ from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mjmr.errors import InvalidInputError
+from mjmr.errors import InvalidInputError, UnknownNameError
 
 if TYPE_CHECKING:
     import mujoco
@@ -26,6 +26,26 @@ class _Sample:
     ready_step: int
     state: Any
     value: NDArray[Any] | None = None
+
+
+@runtime_checkable
+class Actuated(Protocol):
+    """What a sensor has besides if it moves parts of the robot, as a pan-tilt unit does."""
+
+    def actuate(self, data: "mujoco.MjData | None", period: float) -> None:
+        """Set its actuators for the control period [s] that begins; called by simulations.
+
+        ``data`` is None in a kinematic simulation.
+        """
+        ...
+
+    def observe(self, time: float) -> Any:
+        """Where its parts are at ``time`` [s], now; a copy."""
+        ...
+
+    def place(self, data: "mujoco.MjData", parts: Any) -> None:
+        """Put its parts as :meth:`observe` told, for pictures of kinematic simulations."""
+        ...
 
 
 class Sensor(ABC):
@@ -194,3 +214,49 @@ class Sensor(ABC):
                 break
             found = sample
         return found
+
+
+def carrier_body(spec: "mujoco.MjSpec", prefix: str, body: str = "") -> Any:
+    """The body called ``body`` of the robot with this prefix, or its first one.
+
+    Args:
+        spec: With every robot attached.
+        prefix: MJCF name prefix of the robot; empty for the world itself.
+        body: Name in the robot's own model.
+
+    Raises:
+        UnknownNameError: No such body; lists the robot's.
+    """
+    if not prefix:
+        return spec.worldbody
+    own = [b for b in spec.bodies if b.name.startswith(prefix)]
+    for candidate in own:
+        if not body or candidate.name == prefix + body:
+            return candidate
+    raise UnknownNameError("body of the robot", body, [b.name.removeprefix(prefix) for b in own])
+
+
+def physics_of(sensor: Sensor, group: "Group") -> Any:
+    """The :class:`mjmr.simulation.Simulation` of a sensor that feels forces; from ``prepare``.
+
+    Raises:
+        InvalidInputError: It is in a kinematic simulation, in which there are none.
+    """
+    simulation: Any = sensor._simulation
+    if not hasattr(simulation, "model"):
+        raise InvalidInputError(
+            f"{group.name} cannot carry a sensor of kind {sensor.name!r} in a "
+            f"{type(simulation).__name__}, which knows no forces and no joints; use Simulation"
+        )
+    return simulation
+
+
+def check_errors(**deviations: float) -> None:
+    """Check standard deviations and the like, given by name.
+
+    Raises:
+        InvalidInputError: One is negative or not finite.
+    """
+    for name, value in deviations.items():
+        if not 0 <= value < math.inf:
+            raise InvalidInputError(f"{name} must be 0 or more and finite; got {value}")

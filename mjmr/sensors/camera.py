@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.geometry import Pinhole, look_at, rotation_matrix
 from mjmr.randomness import SampleNoise
-from mjmr.sensors.base import Sensor
+from mjmr.robots.platform import FLOOR
+from mjmr.sensors.base import Sensor, carrier_body
 from mjmr.sensors.image_errors import GainField, PixelNoise
 
 if TYPE_CHECKING:
@@ -169,6 +170,11 @@ class Camera(Sensor):
     def add_to(self, spec: "mujoco.MjSpec", prefixes: Sequence[str], key: str) -> None:
         """Add a camera to the world or each robot, or check that the model has the one named."""
         taken = [c.name for c in spec.cameras]
+        if all(prefixes):
+            # the nearest thing drawn is some 2 cm away, not a hundredth of the hall: other robots
+            # come close; the floor is about half as long as the extent that znear is a share of
+            reach = float(max(spec.geom(FLOOR).size[:2]))
+            spec.visual.map.znear = min(spec.visual.map.znear, 0.01 / reach)
         for prefix in prefixes:
             name = f"{prefix}{self._at or key}"
             if self._at:
@@ -181,7 +187,7 @@ class Camera(Sensor):
             if self._pose is None:
                 raise InvalidInputError(f"the camera {key!r} has no place; give at or a position")
             position, rotation = self._pose
-            _carrier(spec, prefix, self._body).add_camera(
+            carrier_body(spec, prefix, self._body).add_camera(
                 name=name,
                 pos=position,
                 xyaxes=[*rotation[:, 0], *-rotation[:, 1]],
@@ -247,17 +253,6 @@ class Camera(Sensor):
         if not self._ids:
             self._ids = [model.camera(name).id for name in self._names]
         return self._ids
-
-
-def _carrier(spec: "mujoco.MjSpec", prefix: str, body: str) -> Any:
-    """The body called ``body`` of the robot with this prefix, or its first one."""
-    if not prefix:
-        return spec.worldbody
-    own = [b for b in spec.bodies if b.name.startswith(prefix)]
-    for candidate in own:
-        if not body or candidate.name == prefix + body:
-            return candidate
-    raise UnknownNameError("body of the robot", body, [b.name.removeprefix(prefix) for b in own])
 
 
 def _pose(position: Any, target: Any, quaternion: Any) -> tuple[Array, Array]:

@@ -31,6 +31,7 @@ class Studio:
         world, team = simulation.world, simulation.team
         model: Any = getattr(simulation, "model", None)
         self._drives: list[Any] = []
+        self._actuated = simulation.actuated
         if model is None:
             model = world.spec().compile()
             self._drives = [
@@ -48,9 +49,11 @@ class Studio:
         """Put the scene as it was when ``simulation.visible_state()`` returned ``state``."""
         data, model = self._data, self.model
         if self._drives:
-            time, poses = state
+            time, poses, *parts = state
             for rows, drive in self._drives:
                 drive.place(data, poses[rows])
+            for sensor, moved in zip(self._actuated, parts, strict=False):
+                sensor.place(data, moved)
             self._carts.place(data, time)
         else:
             data.qpos[:], data.mocap_pos[:], data.mocap_quat[:] = state

@@ -58,6 +58,42 @@ def frames(camera, simulation, robots, read=lambda k: True, seconds=1.0):
     return seen
 
 
+def spots(image):
+    """Middles (k, 2) of the magenta spots that OpenCV finds in an RGB picture [px]."""
+    hsv = cv2.cvtColor(image, cv2.COLOR_RGB2HSV)
+    mask = cv2.inRange(hsv, (145, 150, 40), (155, 255, 255))
+    _, _, stats, middles = cv2.connectedComponentsWithStats(mask)
+    assert (stats[1:, cv2.CC_STAT_AREA] > 20).all()
+    return middles[1:] + 0.5
+
+
+def depth_by_rays(simulation, camera, width, height):
+    """Depths (height, width) that mj_ray finds along each pixel, and where they are smooth.
+
+    Smooth: neither the pixel nor its neighbours look past an edge, where a picture's triangles and
+    true round shapes differ.
+    """
+    model, data = simulation.model, simulation.data
+    mujoco.mj_forward(model, data)
+    at = data.camera(camera)
+    fovy = np.radians(model.camera(camera).fovy[0])
+    focal = height / 2 / np.tan(fovy / 2)
+    u, v = np.meshgrid(np.arange(width) + 0.5 - width / 2, np.arange(height) + 0.5 - height / 2)
+    rays = np.stack([u / focal, -v / focal, -np.ones_like(u)], axis=-1) @ at.xmat.reshape(3, 3).T
+    seen, geom = np.array([1, 1, 0, 0, 0, 0], dtype=np.uint8), np.zeros(1, dtype=np.int32)
+    depth = np.empty((height, width))
+    for i, j in np.ndindex(height, width):
+        found = mujoco.mj_ray(model, data, at.xpos, rays[i, j], seen, 1, -1, geom)
+        # rays are 1 m deep, and mj_ray counts in lengths of the ray
+        depth[i, j] = found if found >= 0 else np.inf
+    # of a plane the inverse depth is linear in the picture
+    near, bend = 1.0 / depth, np.full((height, width), np.inf)
+    down, right = np.diff(near, 2, axis=0)[:, 1:-1], np.diff(near, 2, axis=1)[1:-1]
+    bend[1:-1, 1:-1] = np.maximum(np.abs(down), np.abs(right))
+    with np.errstate(invalid="ignore"):
+        return depth, np.isfinite(depth) & (bend * depth**2 < 0.003)
+
+
 @pytest.mark.parametrize(("at", "to"), [((0, 0, 4), (0, 0, 0)), ((1.5, -3.5, 3.0), (0.2, 0, 0))])
 def test_dots_are_seen_where_they_are_projected(at, to):
     world, _ = soccer(POSES)
@@ -92,6 +128,47 @@ def test_depth_is_the_distance_along_the_axis(kind):
     for x, y, z in ((-1.0, -1.0, 0.3), (1.6, 1.0, 0.0), (-2.0, 0.0, 0.0), (2.77, 0.0, 0.1)):
         u, v = view.project([x, y, z])
         assert depth[int(v), int(u)] == pytest.approx(4.0 - z, abs=2e-3)
+
+
+@pytest.mark.parametrize("at", [(0.1, 0.0, 0.1), (0.05, -0.1, 0.4)])
+def test_depth_is_that_of_rays(at):
+    """Of a camera on a robot that looks at another one, a box, a ball, the floor and the wall."""
+    world, robots = soccer([[-0.6, 0.1, 0.2], [0.4, 0.3, 2.0]])
+    world.add_box(0.9, -0.3, 0.3, 0.5, yaw=0.4, height=0.25)
+    world.add_golf_ball(-0.1, 0.1)
+    place = {"position": at, "look_at": (1.0, 0.0, 0.05)}
+    robots.mount(Camera(modality="depth", width=160, height=120, **place))
+    simulation = start(world)
+    for i, depth in enumerate(robots.camera.read()):
+        wanted, smooth = depth_by_rays(simulation, f"soccer_bot{i}/camera", 160, 120)
+        assert smooth.sum() > 5000
+        np.testing.assert_allclose(depth[smooth], wanted[smooth], atol=0.01)
+
+
+def test_points_are_found_where_a_robots_camera_projects_them():
+    """Spheres of 10 mm around robots that have moved, by OpenCV: within a pixel."""
+    points = np.array([[0.6, 0.1, 0.12], [1.0, -0.3, 0.3], [0.9, 0.35, 0.05]])
+    world, robots = soccer([[-1.0, 0.3, 0.4], [0.7, -0.9, 2.6]])
+
+    def add(spec):
+        for name in robots.names:
+            for point in points:
+                spec.body(f"{name}/base").add_geom(
+                    type=mujoco.mjtGeom.mjGEOM_SPHERE, pos=point, size=[0.01, 0, 0],
+                    rgba=[1, 0, 1, 1], contype=0, conaffinity=0, group=1, mass=0,
+                )  # fmt: skip
+
+    world.edit(add)
+    robots.mount(Camera(position=(0.1, 0.02, 0.2), look_at=(1.0, 0.0, 0.15), rate=60.0))
+    simulation = Simulation(world)
+    for _ in simulation.ticks(0.5):
+        robots.drive([[0.5, 0.2, 1.0]] * 2)
+    wanted = robots.camera.calibration.project(points)
+    for image in robots.camera.read():
+        found = spots(image)
+        apart = np.linalg.norm(found[:, None] - wanted[None], axis=2)
+        assert apart.shape == (3, 3)
+        assert apart.min(axis=0).max() < 1.0
 
 
 def test_there_is_nothing_in_the_sky():

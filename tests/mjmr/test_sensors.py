@@ -80,6 +80,40 @@ def test_noise_and_loss_have_the_stated_size():
     assert abs(np.corrcoef(found.T) - np.eye(3)).max() < 0.02
 
 
+def test_drift_has_its_size_and_its_time_and_leaves_the_rest_alone():
+    def reports(seconds, **options):
+        world, robots = soccer([[-1.0, y, 0.0] for y in np.linspace(-1.8, 1.8, 10)])
+        robots.mount(Localizer(rate=20.0, position_noise=0.004, loss=0.1, **options))
+        simulation = BOTH[1](world, seed=2, control_period=0.05)
+        return np.array([robots.localizer.read().copy() for _ in simulation.ticks(seconds)])
+
+    plain, drifting = reports(600.0), reports(600.0, drift=0.5, drift_time=2.0)
+    np.testing.assert_array_equal(np.isnan(plain), np.isnan(drifting))
+    np.testing.assert_array_equal(plain[..., 2], drifting[..., 2])
+    drift = (drifting - plain)[..., :2]
+    kept = ~np.isnan(drift)
+    assert drift[kept].std() == pytest.approx(0.5, rel=0.05)
+    lag = 40  # 2 s: 1/e is left
+    assert np.nanmean(drift[lag:] * drift[:-lag]) / 0.25 == pytest.approx(np.exp(-1), abs=0.06)
+    assert np.nanmax(np.abs(np.diff(drift, axis=0))) < 0.5 * (1 - np.exp(-0.05)) ** 0.5 * 8
+    across = np.nanmean(drift[..., 0] * drift[..., 1]) / 0.25
+    assert abs(across) < 0.06, "x and y wander by themselves"
+
+
+def test_drift_depends_on_the_sample_number_alone():
+    from mjmr.randomness import Drift, Streams
+
+    def drift():
+        return Drift(Streams(3).sequence("x"), (2, 2), 0.9)
+
+    every, picked = drift(), drift()
+    wanted = np.array([every.sample(k).copy() for k in range(400)])
+    for k in (5, 399, 64, 63, 200, 0, 320, 321, 128):
+        np.testing.assert_array_equal(picked.sample(k), wanted[k])
+    more = Drift(Streams(3).sequence("x"), (3, 2), 0.9)
+    np.testing.assert_array_equal(more.sample(70)[:2], wanted[70]), "rows have their own numbers"
+
+
 @pytest.mark.parametrize("kind", BOTH)
 def test_a_reports_lost_fault_hides_the_robot(kind):
     fault = Fault(kind="reports-lost", robot=0, start=0.5, end=1.0)
@@ -108,6 +142,8 @@ def test_reports_are_read_only_and_need_a_simulation():
         {"position_noise": -1.0},
         {"loss": 1.5},
         {"phase": np.nan},
+        {"drift": -1.0},
+        {"drift_time": 0.0},
     ],
 )
 def test_bad_sensor_options_are_refused(options):
