@@ -7,7 +7,6 @@ import numpy as np
 from controllers.legged.gait import Trot
 from controllers.legged.heading import HeadingLoop
 from controllers.legged.motion import AiboMotion
-from mjmr.sensors.compass import Compass
 
 from experiments.proving_ground.aibo_trials import get_up, kick, roll
 from experiments.proving_ground.course import (
@@ -21,6 +20,7 @@ from experiments.proving_ground.course import (
 )
 from mjmr.claims import Bound, Claim, Evidence, Table
 from mjmr.robots.aibo_ers7 import AiboERS7
+from mjmr.sensors.compass import Compass
 from mjmr.sensors.localizer import Localizer
 from mjmr.simulation import Simulation
 
@@ -94,8 +94,8 @@ def walk(condition: Mapping[str, Any], seed: int) -> Metrics:
 def straight(condition: Mapping[str, Any], seed: int) -> Metrics:
     """Walk 3 m with the heading held by a compass."""
     world, group = _dog(condition, (-2.0, 0.0, 0.0))
-    group.mount(Compass(rate=1 / PERIOD, noise=np.radians(1.0)))
-    group.mount(Localizer(rate=1 / PERIOD))
+    compass = group.mount(Compass(rate=1 / PERIOD, noise=np.radians(1.0)))
+    localizer = group.mount(Localizer(rate=1 / PERIOD))
     simulation = Simulation(
         world, seed=seed, control_period=PERIOD, dt_max=condition["dt_ms"] / 1000.0
     )
@@ -103,9 +103,9 @@ def straight(condition: Mapping[str, Any], seed: int) -> Metrics:
     loop, motion = HeadingLoop(), engine()
     for _ in simulation.ticks(14.0):
         # where it is decides when the course ends, not how it walks
-        if group.localizer.read()[0, 0] > 1.0:
+        if localizer.read()[0, 0] > 1.0:
             break
-        turn = loop.turn(group.compass.read(), 0.0)
+        turn = loop.turn(compass.read(), 0.0)
         group.drive(motion.command([[0.30, 0.0, turn[0]]]))
     pose = course.log.poses[-1, 0]
     return {

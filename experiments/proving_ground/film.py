@@ -64,6 +64,7 @@ class _Directors:
         rig: Any = groups["nims"].platform
         self._travel = swing_free(_ALONG, 0.6, rig.swing_period(rig.line))
         self._motion = engine()
+        self._scanner: Any = groups["pioneers"].sensors["lidar"]
 
     def drive(self, now: float) -> None:
         groups = self.groups
@@ -82,7 +83,7 @@ class _Directors:
 
     def _keep_clear(self) -> np.ndarray:
         """Straight on, and away from what is near ahead."""
-        ranges = self.groups["pioneers"].lidar.read()
+        ranges = self._scanner.read()
         ahead = np.where(np.isfinite(ranges), ranges, np.inf)[:, 30:-30]
         left, right = ahead[:, ahead.shape[1] // 2 :].min(1), ahead[:, : ahead.shape[1] // 2].min(1)
         near = np.minimum(left, right) < _NEAR

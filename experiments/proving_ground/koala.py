@@ -54,15 +54,18 @@ def _follow(course: Course, commands: Array, track: float) -> Array:
     Headings are not wrapped.
     """
     group, platform = course.group, Koala()
-    counts = group.encoders.counts_per_turn
+    encoders: Any = group.sensors["encoders"]
     odometry = Odometry(
-        group.start, radius=platform.rolling_radius, track=track, counts_per_turn=counts
+        group.start,
+        radius=platform.rolling_radius,
+        track=track,
+        counts_per_turn=encoders.counts_per_turn,
     )
     found = []
     for command, _ in zip(commands, course.simulation.ticks(len(commands) * PERIOD), strict=True):
-        found.append(odometry.step(group.encoders.read())[0])
+        found.append(odometry.step(encoders.read())[0])
         group.drive(np.broadcast_to(command, (1, 2)))
-    found.append(odometry.step(group.encoders.read())[0])
+    found.append(odometry.step(encoders.read())[0])
     poses = np.array(found)
     poses[:, 2] = np.unwrap(poses[:, 2])
     return poses

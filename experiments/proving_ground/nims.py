@@ -8,7 +8,6 @@ import numpy as np
 from controllers.motion.swing_free import swing_free
 from experiments.proving_ground.course import Array, Metrics, apart, sheet
 from mjmr.claims import Bound, Claim
-from mjmr.group import Group
 from mjmr.robots.nims import Nims
 from mjmr.sensors.cable_tension import CableTension
 from mjmr.simulation import Simulation
@@ -21,7 +20,7 @@ WAY = {"lab": 4.0, "field": 20.0}
 VARIANTS = tuple(f"{size}-{cable}" for size in BOUNDS for cable in ("curve", "tendon"))
 
 
-def _rig(condition: Mapping[str, Any], **options: Any) -> tuple[Nims, Group, Simulation]:
+def _rig(condition: Mapping[str, Any], **options: Any) -> tuple[Nims, Any, Simulation]:
     size, cable = condition["variant"].split("-")
     platform = Nims(size=size, cable=cable, **options)
     world = World(bounds=BOUNDS[size])
@@ -31,9 +30,8 @@ def _rig(condition: Mapping[str, Any], **options: Any) -> tuple[Nims, Group, Sim
     return platform, group, Simulation(world, control_period=PERIOD, dt_max=dt)
 
 
-def _coordinates(simulation: Simulation) -> Array:
-    """Indices of along, lift, swing, sway and line in ``qpos``: the rig's only joints."""
-    return np.arange(5)
+# along, lift, swing, sway and line in ``qpos``: the rig's only joints, the world's first
+_ALONG, _LIFT, _SWING = 0, 1, 2
 
 
 def move(condition: Mapping[str, Any], seed: int) -> Metrics:
@@ -45,11 +43,10 @@ def move(condition: Mapping[str, Any], seed: int) -> Metrics:
     plan = swing_free(way, speed, period)
     ticks = int(np.ceil(plan.duration / PERIOD))
     seen: list[Array] = []
-    columns = _coordinates(simulation)
-    simulation.watch_steps(lambda: seen.append(simulation.data.qpos[columns].copy()))
+    simulation.watch_steps(lambda: seen.append(simulation.data.qpos[: _SWING + 1].copy()))
     for k, _ in enumerate(simulation.ticks(ticks * PERIOD + 30.0)):
         group.drive([[plan.velocity((k + 1) * PERIOD), 0.0]])
-    along, lift, swing = np.array(seen)[:, :3].T
+    along, lift, swing = np.array(seen)[:, [_ALONG, _LIFT, _SWING]].T
     arrived = round(ticks * PERIOD / simulation.timestep)
     curve = platform.cable.sag * (along / (platform.cable.span / 2)) ** 2
     per_swing = round(2 * period / simulation.timestep)
@@ -68,10 +65,9 @@ def move(condition: Mapping[str, Any], seed: int) -> Metrics:
 def pendulum(condition: Mapping[str, Any], seed: int) -> Metrics:
     """Let the package swing from 0.1 rad; its period against that of a point on the line."""
     platform, _, simulation = _rig(condition)
-    swing = int(_coordinates(simulation)[2])
-    simulation.data.qpos[swing] = 0.1
+    simulation.data.qpos[_SWING] = 0.1
     angle: list[float] = []
-    simulation.watch_steps(lambda: angle.append(float(simulation.data.qpos[swing])))
+    simulation.watch_steps(lambda: angle.append(float(simulation.data.qpos[_SWING])))
     ideal = 2 * np.pi * np.sqrt(platform.line / 9.81)
     for _ in simulation.ticks(12 * ideal):
         pass

@@ -27,7 +27,9 @@ def noise(condition: Mapping[str, Any], seed: int) -> Metrics:
     platform = platform_class(condition["platform"])()
     world = hall(4.0)
     world.add_box(1.5, 0.0, 0.4, 0.4, height=0.4)
-    pose = (0.0, 0.0, 0.0) if platform.anchored else rng.uniform([-3, -3, -np.pi], [0.5, 3, np.pi])
+    pose = np.zeros(3)
+    if not platform.anchored:
+        pose = rng.uniform([-3, -3, -np.pi], [0.5, 3, np.pi])
     group = world.add_group(platform, [pose])
     for sensor in (Lidar(position=(0.0, 0.0, 0.3)), Compass(), IMU(), Bumper(), Localizer()):
         if sensor.name not in group.sensors:

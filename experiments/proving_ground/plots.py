@@ -61,9 +61,8 @@ def _circles(rows: Table, folder: Path) -> Path:
                 values = there.values("error_pct")
                 middle = float(values.mean())
                 points.append(float(angle))
-                estimates.append(
-                    Estimate(middle, (float(values.min()), float(values.max())), len(values))
-                )
+                low, high = float(values.min()), float(values.max())
+                estimates.append(Estimate(middle, low, high, len(values)))
             interval_line(axes, points, estimates, f"{speed:g} m/s, range over timesteps")
         axes.axhspan(-2, 2, alpha=0.08)
         axes.legend()

@@ -29,11 +29,12 @@ def lidar(condition: Mapping[str, Any], seed: int) -> Metrics:
         world.add_box(x, y, 0.5, 0.3, yaw=yaw, height=0.4)
     pioneers = world.add_group(Pioneer2DX, poses[6:9])
     bots = world.add_group(SoccerBot, poses[9:])
-    pioneers.mount(Lidar(position=(0.0, 0.0, _PLANE), beams=361, field_of_view=2 * np.pi,
+    scanner = pioneers.mount(Lidar(position=(0.0, 0.0, _PLANE), beams=361, field_of_view=2 * np.pi,
                          max_range=20.0))  # fmt: skip
     simulation = Simulation(world, seed=seed)
     for _ in simulation.ticks(0.1):
-        ranges = pioneers.lidar.read()
+        pass
+    ranges = scanner.read()
     boxes = [(x, y, yaw, 0.25, 0.15) for x, y, yaw in poses[:6]]
     hulls = []
     model = simulation.model
@@ -47,7 +48,7 @@ def lidar(condition: Mapping[str, Any], seed: int) -> Metrics:
     for i, (x, y, yaw) in enumerate(pioneers.start):
         others = boxes + hulls[:i] + hulls[i + 1 :]
         true = np.full(361, np.inf)
-        for k, angle in enumerate(yaw + pioneers.lidar.angles):
+        for k, angle in enumerate(yaw + scanner.angles):
             ray = (np.array([x, y]), np.array([np.cos(angle), np.sin(angle)]))
             found = [_to_box(*ray, box) for box in [walls, *others]]
             found += [_to_disc(*ray, bot[:2], SoccerBot.radius) for bot in bots.start]
@@ -62,11 +63,11 @@ def lidar_noise(condition: Mapping[str, Any], seed: int) -> Metrics:
     world = hall(4.0)
     robots = world.add_group(Pioneer2DX, [[0.5, 0.3, 0.4]])
     deviation = 0.02
-    robots.mount(Lidar(rate=50.0, noise=deviation), "noisy")
-    robots.mount(Lidar(rate=50.0), "exact")
+    noisy = robots.mount(Lidar(rate=50.0, noise=deviation), "noisy")
+    exact = robots.mount(Lidar(rate=50.0), "exact")
     errors = []
     for _ in Simulation(world, seed=seed, control_period=0.02).ticks(12.0):
-        errors.append(robots.noisy.read() - robots.exact.read())
+        errors.append(noisy.read() - exact.read())
     all_errors = np.concatenate(errors, axis=None)
     all_errors = all_errors[np.isfinite(all_errors)]
     return {
@@ -80,7 +81,7 @@ def sonar(condition: Mapping[str, Any], seed: int) -> Metrics:
     """Where a screen that moves in from the side is first heard, against half the cone's width."""
     errors = []
     for side in (-1.0, 1.0):
-        heard, silent = 0.0, np.radians(30.0)
+        heard, silent, offset = 0.0, np.radians(30.0), 0.0
         # the edge of a screen 2 m ahead, at this bearing from the sonar's axis
         while silent - heard > np.radians(0.02):
             bearing = (heard + silent) / 2
@@ -88,12 +89,14 @@ def sonar(condition: Mapping[str, Any], seed: int) -> Metrics:
             robots = world.add_group(Pioneer2DX, [[0.0, 0.0, 0.0]])
             x, y = 2.0, 2.0 * np.tan(bearing)
             world.add_box(x + 0.05, side * (y + 1.0), 0.1, 2.0, height=1.0)
-            robots.mount(Sonar(sites=("lidar",), max_range=3.0, max_incidence=np.pi / 2, rays=121))
+            hearing = robots.mount(
+                Sonar(sites=("lidar",), max_range=3.0, max_incidence=np.pi / 2, rays=121)
+            )
             simulation = Simulation(world)
             for _ in simulation.ticks(0.05):
                 pass
             offset = _sites(simulation, robots.prefixes[0] + "lidar")[0]
-            if np.isfinite(robots.sonar.read()[0, 0]):
+            if np.isfinite(hearing.read()[0, 0]):
                 heard = bearing
             else:
                 silent = bearing
@@ -113,23 +116,23 @@ def camera(condition: Mapping[str, Any], seed: int) -> Metrics:
     for x, y in places:
         world.add_golf_ball(x, y)
     kind = {"position": (0.0, 0.0, 0.35), "look_at": (3.0, 0.0, 0.0), "fovy": 0.9}
-    robots.mount(Camera(width=800, height=600, rate=10.0, **kind), "eye")
-    robots.mount(Camera(width=160, height=120, rate=10.0, modality="depth", **kind), "depth")
+    eye = robots.mount(Camera(width=800, height=600, rate=10.0, **kind), "eye")
+    deep = robots.mount(Camera(width=160, height=120, rate=10.0, modality="depth", **kind), "depth")
     simulation = Simulation(world, seed=seed, control_period=0.1)
     with contextlib.closing(simulation):
         for _ in simulation.ticks(0.3):
             pass
-        image, depth = robots.eye.read()[0], robots.depth.read()[0]
+        image, depth = eye.read()[0], deep.read()[0]
         model, data = simulation.model, simulation.data
         mujoco.mj_forward(model, data)
         body = data.body("pioneer2dx0/base")
         frame = body.xmat.reshape(3, 3)
         inside = (data.geom_xpos[[model.geom(n).id for n, _ in world.movers]] - body.xpos) @ frame
-        pinhole = robots.eye.calibration
+        pinhole = eye.calibration
         told = pinhole.project(inside)
         found = _orange(image)
         error = [float(np.hypot(*(found - t).T).min()) for t in told]
-        ray_error = _depth_error(simulation, robots.depth.calibration, depth, frame, body.xpos)
+        ray_error = _depth_error(simulation, deep.calibration, depth, frame, body.xpos)
     return {"pixel_error": max(error), "found": len(found), "depth_error_m": ray_error}
 
 
@@ -137,11 +140,11 @@ def schedule(condition: Mapping[str, Any], seed: int) -> Metrics:
     """A 10 Hz lidar, 100 ms late, asked every 10 ms: what it delivers is when from when?"""
     world = hall(4.0)
     robots = world.add_group(Pioneer2DX, [[0.0, 0.0, 0.0]])
-    robots.mount(Lidar(rate=10.0, latency=0.1))
+    scanner = robots.mount(Lidar(rate=10.0, latency=0.1))
     late, instants = [], []
     simulation = Simulation(world, seed=seed, control_period=0.01)
     for now in simulation.ticks(3.0):
-        sampled = robots.lidar.sampled_at
+        sampled = scanner.sampled_at
         if np.isfinite(sampled) and (not instants or sampled != instants[-1]):
             instants.append(sampled)
             late.append(now - sampled)
@@ -192,7 +195,7 @@ def _sites(simulation: Simulation, name: str) -> Array:
     return np.array(simulation.data.site(name).xpos)
 
 
-def _orange(image: Array) -> Array:
+def _orange(image: Any) -> Any:
     """Centres (k, 2) [px] of orange blobs, as OpenCV finds them."""
     hsv = cv2.cvtColor(np.ascontiguousarray(image), cv2.COLOR_RGB2HSV)
     mask = cv2.inRange(hsv, np.array([3, 150, 60]), np.array([22, 255, 255]))
