@@ -6,7 +6,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mjmr.errors import InvalidInputError
+from mjmr.errors import InvalidInputError, UnknownNameError
+
+MATERIALS = ("plain", "mirror", "black")
+
+
+def check_material(name: str) -> None:
+    """Refuse what props and walls are not made of.
+
+    Raises:
+        UnknownNameError: Not one of ``MATERIALS``.
+    """
+    if name not in MATERIALS:
+        raise UnknownNameError("material", name, MATERIALS)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,6 +41,7 @@ class Cart:
         start: Where on its cycle it is at time 0, 0 to 1; 0 is the lower end.
         mass: [kg].
         force: Most that its servo pushes [N].
+        material: As of :class:`mjmr.world.Box`.
     """
 
     x: float
@@ -43,8 +56,10 @@ class Cart:
     start: float = 0.0
     mass: float = 20.0
     force: float = 200.0
+    material: str = "plain"
 
     def __post_init__(self):
+        check_material(self.material)
         for name in (
             "length",
             "width",

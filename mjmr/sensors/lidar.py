@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError, UnknownNameError
-from mjmr.randomness import SampleNoise
 from mjmr.sensors.base import Sensor
-from mjmr.sensors.mount import base_body, require_site
+from mjmr.sensors.mount import carrier_model, site_place
+from mjmr.sensors.range_errors import RangeErrors, fan_angles
 
 if TYPE_CHECKING:
     import mujoco
@@ -36,8 +36,9 @@ class Lidar(Sensor):
 
     Attributes:
         angles: Of the beams (b,) [rad] to the mount's x axis, anticlockwise, increasing.
+        field_of_view: [rad].
         max_range: [m].
-        min_range: [m].
+        errors: What becomes of true ranges.
     """
 
     name = "lidar"
@@ -95,8 +96,13 @@ class Lidar(Sensor):
             raise InvalidInputError(
                 f"field_of_view lies above 0 and is at most 2 pi rad; got {field_of_view}"
             )
-        check_ranges(min_range, max_range)
-        check_errors(noise=noise, proportional_noise=proportional_noise, drop_out=drop_out)
+        self.errors = RangeErrors(
+            min_range=min_range,
+            max_range=max_range,
+            noise=noise,
+            proportional_noise=proportional_noise,
+            drop_out=drop_out,
+        )
         if method not in METHODS:
             raise UnknownNameError("method of casting rays", method, METHODS)
         if at and position is not None:
@@ -118,12 +124,10 @@ class Lidar(Sensor):
             raise InvalidInputError(
                 f"a housing has a positive length, width and height; got {housing}"
             )
-        self.max_range, self.min_range = float(max_range), float(min_range)
+        self.max_range = float(max_range)
         self.field_of_view, self.method = float(field_of_view), method
         self.angles = fan_angles(int(beams), self.field_of_view)
         self.angles.setflags(write=False)
-        self.noise, self.proportional_noise = float(noise), float(proportional_noise)
-        self.drop_out = float(drop_out)
         self._at, self._yaw = at or ("" if position is not None else "lidar"), float(yaw)
 
     @classmethod
@@ -191,23 +195,21 @@ class Lidar(Sensor):
         """Add the optics as a site, and the housing, to each robot."""
         import mujoco
 
-        name = f"{key}_optics"
+        robot = carrier_model(self)
+        if self._place is None:
+            body, place, quat = site_place(robot, self._at)
+        else:
+            body, place = robot.body(1).name, self._place
+            quat = np.array([math.cos(self._yaw / 2), 0.0, 0.0, math.sin(self._yaw / 2)])
+        if self._housing is not None:
+            up = np.empty(3)
+            mujoco.mju_rotVecQuat(up, np.array([0.0, 0.0, self._housing[2] / 2]), quat)
+            place = place + up
         for prefix in prefixes:
-            if self._place is None:
-                require_site(spec, prefix, self._at)
-                mount = spec.site(f"{prefix}{self._at}")
-                body, place = mount.parent, np.array(mount.pos)
-                if not np.allclose(mount.alt.euler, 0.0, equal_nan=True):
-                    spec.compile()
-                quat = np.array(mount.quat)
-            else:
-                body, place = base_body(spec, prefix), self._place
-                quat = np.array([math.cos(self._yaw / 2), 0.0, 0.0, math.sin(self._yaw / 2)])
+            carrier = spec.body(f"{prefix}{body}")
+            carrier.add_site(name=f"{prefix}{key}_optics", pos=place, quat=quat, group=3)
             if self._housing is not None:
-                up = np.empty(3)
-                mujoco.mju_rotVecQuat(up, np.array([0.0, 0.0, self._housing[2] / 2]), quat)
-                place = place + up
-                body.add_geom(
+                carrier.add_geom(
                     name=f"{prefix}{key}_housing",
                     type=mujoco.mjtGeom.mjGEOM_BOX,
                     pos=place,
@@ -218,16 +220,10 @@ class Lidar(Sensor):
                     friction=[0.3, 0.005, 0.0001],
                     group=0,
                 )
-            body.add_site(name=f"{prefix}{name}", pos=place, quat=quat, group=3)
 
     def prepare(self, sequence: np.random.SeedSequence, group: "Group") -> None:
         """Set up the noise streams, and remember what the model calls the optics."""
-        if group is None:
-            raise InvalidInputError("a lidar is mounted on robots: group.mount(Lidar(...))")
-        noise, drops = sequence.spawn(2)
-        shape = (group.n, len(self.angles))
-        self._errors = SampleNoise(noise, shape, "normal")
-        self._drops = SampleNoise(drops, shape, "uniform")
+        self._streams = self.errors.streams(sequence, (group.n, len(self.angles)))
         key = next(key for key, sensor in group.sensors.items() if sensor is self)
         self._optics = f"{key}_optics"
         self._found: NDArray[np.int64] | None = None
@@ -249,69 +245,16 @@ class Lidar(Sensor):
         ranges, hits, _ = scene.cast(
             origins, frames, self._rows, self.angles, self.max_range, self.method
         )
-        unseen = scene.dark[hits] & (hits >= 0) if scene.dark.any() else None
-        return self._spoiled(ranges, unseen, number)
+        if scene.dark.any():
+            ranges[scene.dark[hits] & (hits >= 0)] = np.inf
+        return self.errors.apply(ranges, self._streams, number)
 
     def nothing(self) -> Array:
         """All NaN."""
         return np.full((self._group.n, len(self.angles)), np.nan)
-
-    def _spoiled(self, ranges: Array, unseen: NDArray[np.bool_] | None, number: int) -> Array:
-        near = ranges < self.min_range if self.min_range > 0 else None
-        if self.noise or self.proportional_noise:
-            size: Any = self.noise
-            if self.proportional_noise:
-                # of an infinite range the error does not matter, but must not be NaN
-                finite = np.minimum(ranges, self.max_range)
-                size = np.maximum(self.noise, self.proportional_noise * finite)
-            ranges += size * self._errors.sample(number)
-            np.maximum(ranges, 0.0, out=ranges)
-        if near is not None:
-            ranges[near] = -np.inf
-        if unseen is not None:
-            ranges[unseen] = np.inf
-        if self.drop_out > 0:
-            ranges[self._drops.sample(number) < self.drop_out] = np.nan
-        return ranges
 
     def _sites(self) -> NDArray[np.int64]:
         assert self._simulation is not None
         if self._found is None:
             self._found = self._simulation.rays.sites(self._group.prefixes, [self._optics])
         return self._found
-
-
-def fan_angles(beams: int, width: float) -> Array:
-    """Angles (beams,) [rad], evenly spaced over ``width`` and symmetric; of one beam 0."""
-    if beams == 1:
-        return np.zeros(1)
-    if width >= 2 * math.pi - 1e-9:
-        return -math.pi + 2 * math.pi * np.arange(beams) / beams
-    return np.linspace(-width / 2, width / 2, beams)
-
-
-def check_ranges(min_range: float, max_range: float) -> None:
-    """Refuse ranges that cannot be.
-
-    Raises:
-        InvalidInputError: Not 0 <= min_range < max_range, or not finite.
-    """
-    if not (0 <= min_range < max_range and math.isfinite(max_range)):
-        raise InvalidInputError(
-            f"ranges must be finite with 0 <= min_range < max_range; got {min_range} and "
-            f"{max_range} m"
-        )
-
-
-def check_errors(**values: float) -> None:
-    """Refuse deviations that are negative or not finite and probabilities outside [0, 1].
-
-    Raises:
-        InvalidInputError: Names the first one.
-    """
-    for name, value in values.items():
-        if name == "drop_out":
-            if not 0 <= value <= 1:
-                raise InvalidInputError(f"drop_out is a probability, 0 to 1; got {value}")
-        elif not (value >= 0 and math.isfinite(value)):
-            raise InvalidInputError(f"{name} is a standard deviation, 0 or more; got {value}")

@@ -1,46 +1,56 @@
-"""Where ray-based sensors are: named sites of a robot's model, or a site added to it."""
+"""Where ray-based sensors are: sites of a robot's model, by name or by numbered array."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from mjmr.errors import InvalidInputError, UnknownNameError
 
 if TYPE_CHECKING:
-    import mujoco
+    from mjmr.sensors.base import Sensor
+
+Array = NDArray[np.float64]
 
 
-def site_names(spec: "mujoco.MjSpec", prefix: str) -> list[str]:
-    """Names of a robot's sites, without its prefix."""
-    return [s.name.removeprefix(prefix) for s in spec.sites if s.name.startswith(prefix)]
-
-
-def require_site(spec: "mujoco.MjSpec", prefix: str, name: str) -> None:
-    """Check that a robot has a site.
+def carrier_model(sensor: "Sensor") -> Any:
+    """Compiled model of one robot that carries ``sensor``.
 
     Raises:
-        UnknownNameError: It has none of that name; lists those it has.
+        InvalidInputError: None does.
     """
-    names = site_names(spec, prefix)
-    if name not in names:
-        raise UnknownNameError("site of the robot's model", name, names)
+    if sensor.carrier is None:
+        raise InvalidInputError(f"a {sensor.name} is mounted on robots: group.mount(...)")
+    group = sensor.carrier
+    return group.platform.model(group.first_number, group.team).compile()
 
 
-def numbered_sites(spec: "mujoco.MjSpec", prefix: str, stem: str) -> list[str]:
-    """A robot's sites called ``stem`` and a number, in the numbers' order.
+def site_names(robot: Any) -> list[str]:
+    """Names of the sites of a robot's model."""
+    return [robot.site(k).name for k in range(robot.nsite)]
+
+
+def site_place(robot: Any, name: str) -> tuple[str, Array, Array]:
+    """Body that carries a site, and the site's position (3,) [m] and quaternion (4,) on it.
+
+    Raises:
+        UnknownNameError: There is no such site; lists those there are.
+    """
+    if name not in site_names(robot):
+        raise UnknownNameError("site of the robot's model", name, site_names(robot))
+    k = robot.site(name).id
+    return robot.body(robot.site_bodyid[k]).name, robot.site_pos[k], robot.site_quat[k]
+
+
+def numbered_sites(robot: Any, stem: str) -> tuple[str, ...]:
+    """Sites called ``stem`` and a number, in the numbers' order.
 
     Raises:
         UnknownNameError: There is none; lists the stems there are.
     """
-    names = site_names(spec, prefix)
-    found = [n for n in names if n.removeprefix(stem).isdecimal() and n.startswith(stem)]
+    names = site_names(robot)
+    found = [n for n in names if n.startswith(stem) and n.removeprefix(stem).isdecimal()]
     if not found:
         stems = dict.fromkeys(n.rstrip("0123456789") for n in names if n[-1:].isdecimal())
         raise UnknownNameError("array of sites of the robot's model", stem, stems)
-    return sorted(found, key=lambda n: int(n.removeprefix(stem)))
-
-
-def base_body(spec: "mujoco.MjSpec", prefix: str) -> "mujoco.MjsBody":
-    """A robot's first body."""
-    for body in spec.bodies:
-        if body.name.startswith(prefix) and body.name != "world":
-            return body
-    raise InvalidInputError(f"there is no robot called {prefix!r} in this model")
+    return tuple(sorted(found, key=lambda n: int(n.removeprefix(stem))))

@@ -50,6 +50,7 @@ class RayScene(Stage):
         self._own = [
             np.flatnonzero((self._owners == k) & seen) for k in range(len(self.names))
         ]
+        self._bases = np.array([_base(model, name) for name in self.names])
         self._other_kinds = sorted({mujoco.mjtGeom(t).name for t in model.geom_type[rest]})
         names = np.array([model.mat(k).name for k in range(model.nmat)] + [""])
         self.dark = np.isin(names, DARK)[model.geom_matid]
@@ -66,6 +67,11 @@ class RayScene(Stage):
         """Positions (m, 3) [m] and rotations (m, 3, 3) of m sites in the state shown."""
         flat = sites.ravel()
         return self.data.site_xpos[flat], self.data.site_xmat[flat].reshape(-1, 3, 3)
+
+    def bases(self) -> tuple[Array, Array]:
+        """Positions (n, 3) [m] and rotations (n, 3, 3) of the robots' bases in the state shown."""
+        data = self.data
+        return data.xpos[self._bases], data.xmat[self._bases].reshape(-1, 3, 3)
 
     def mounts(self, sites: NDArray[np.int64]) -> Array:
         """Poses (k, 3) [m, m, rad] of sites (k,) of one robot in its base's frame, at home."""
@@ -205,3 +211,8 @@ class RayScene(Stage):
                 f"compiled rays cannot see {', '.join(self._other_kinds)} in the collision group; "
                 'use method="auto"'
             )
+
+
+def _base(model: Any, robot: str) -> int:
+    """First body of a robot."""
+    return next(b for b in range(model.nbody) if model.body(b).name.startswith(f"{robot}/"))
