@@ -57,6 +57,17 @@ def build_spec(world: "World") -> mujoco.MjSpec:
     return spec
 
 
+def leave_out_drawn(spec: mujoco.MjSpec) -> None:
+    """Delete what is only seen from ``spec``: for ``world.edit``, where many robots must be fast.
+
+    MuJoCo moves drawn shapes along at every step: of 200 Pioneers that takes a fifth of the time.
+    Films and cameras then show collision shapes alone.
+    """
+    for geom in list(spec.geoms):
+        if geom.group != 0 and geom.contype == 0 and geom.conaffinity == 0:
+            spec.delete(geom)
+
+
 def export_xml(world: "World", timestep: float) -> str:
     """MJCF text of ``world`` with a keyframe ``start``; see :meth:`mjmr.world.World.to_xml`."""
     spec = world.spec()

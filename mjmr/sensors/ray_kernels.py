@@ -297,6 +297,7 @@ def _box(px, py, pz, ax, ay, az, bx, by, bz, hx, hy, hz, cosines, sines, lo, hi,
     fy = hy - py if py > hy else (-hy - py if py < -hy else 0.0)
     fz = hz - pz if pz > hz else (-hz - pz if pz < -hz else 0.0)
     inside = fx == 0.0 and fy == 0.0 and fz == 0.0
+    near = max(near, math.sqrt(fx * fx + fy * fy + fz * fz) - 1e-9)
     for j in range(lo, hi):
         t = best[j]
         if t <= near:

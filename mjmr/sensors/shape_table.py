@@ -86,14 +86,17 @@ def shape_table(model: Any, owners: NDArray[np.int64]) -> tuple[ShapeTable, NDAr
         rows = np.flatnonzero(owners[geoms] == robot)
         if len(rows):
             _hide(model, data, geoms, rows, bodies, offsets, radii, kept)
+    # small ones first: they spare walls and floors, which span many beams, most of these
+    order = np.flatnonzero(kept)[np.argsort(radii[kept], kind="stable")]
+    geoms = geoms[order]
     table = ShapeTable(
-        geoms[kept].astype(np.int64),
-        model.geom_type[geoms[kept]].astype(np.int64),
-        model.geom_size[geoms[kept]].copy(),
-        owners[geoms[kept]],
-        bodies[kept],
-        offsets[kept],
-        radii[kept],
+        geoms.astype(np.int64),
+        model.geom_type[geoms].astype(np.int64),
+        model.geom_size[geoms].copy(),
+        owners[geoms],
+        bodies[order],
+        offsets[order],
+        radii[order],
     )
     return table, seen & ~known
 
