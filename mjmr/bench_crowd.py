@@ -1,4 +1,4 @@
-"""Speed in work W: Pioneers among boxes in a walled square, blind or with lidars, and in the open."""
+"""Speed in work W: Pioneers among boxes in a walled square, blind or with lidars."""
 
 import time
 from collections.abc import Callable
@@ -152,9 +152,7 @@ def build(
     grid = grid[rng.permutation(len(grid))[: n + boxes]]
     for x, y in grid[n:]:
         world.add_box(x, y, BOX, BOX, height=BOX)
-    robots = world.add_group(
-        Pioneer2DX, np.column_stack([grid[:n], rng.uniform(-np.pi, np.pi, n)])
-    )
+    robots = world.add_group(Pioneer2DX, np.column_stack([grid[:n], rng.uniform(-np.pi, np.pi, n)]))
     if sees:
         # in the bumper, where it sees other robots' hulls
         robots.mount(Lidar(position=(0.22, 0.0, 0.18)))

@@ -112,7 +112,7 @@ class Lidar(Sensor):
             self._place.shape == (3,) and np.isfinite(self._place).all() and math.isfinite(yaw)
         ):
             raise InvalidInputError(
-                f"a lidar's position has three finite numbers and a finite yaw; got {position}, {yaw}"
+                f"position is three finite numbers and yaw one; got {position} and {yaw}"
             )
         if yaw and position is None:
             raise InvalidInputError("a site has a heading of its own; yaw goes with a position")
@@ -159,10 +159,10 @@ class Lidar(Sensor):
         """Hokuyo URG-04LX: 682 beams 360/1024 degrees apart, 0.02 to 4 m, 10 scans a second.
 
         Steps 44 to 725 of 1024, 600 turns a minute (SCIP 2.0 protocol, answer to PP; grade B).
-        Stated accuracy 10 mm up to 1 m and 1 % beyond, taken as three deviations (grade C); for what
-        surfaces add see Kneip and others, "Characterization of the compact Hokuyo URG-04LX 2D laser
-        range scanner", ICRA 2009. Housing 50 x 50 x 70 mm; that beams leave from its middle, and
-        that a scan is late by the 0.1 s it takes, is assumed.
+        Stated accuracy 10 mm up to 1 m and 1 % beyond, taken as three deviations (grade C); for
+        what surfaces add see Kneip and others, "Characterization of the compact Hokuyo URG-04LX 2D
+        laser range scanner", ICRA 2009. Housing 50 x 50 x 70 mm; that beams leave from its middle,
+        and that a scan is late by the 0.1 s it takes, is assumed.
         """
         preset = {
             "beams": 682,

@@ -166,6 +166,7 @@ class Ranger(Sensor):
             cosines=True,
         )  # fmt: skip
         # an angle at the very limit still returns
+        assert cosines is not None
         ranges[cosines < math.cos(self.max_incidence) - 1e-9] = np.inf
         if self._light and scene.dark.any():
             ranges[scene.dark[hits] & (hits >= 0)] = np.inf

@@ -1,4 +1,4 @@
-"""Compiled rays against the shapes MuJoCo knows: fans of beams, lines of sight, angles of incidence.
+"""Compiled rays against the shapes MuJoCo knows: fans of beams, lines of sight, incidence.
 
 Every shape is treated exactly, as it stands in space. What makes fans fast is that their beams lie
 in one plane, evenly spaced: a shape is tried against those beams alone that its bounding sphere's
@@ -42,7 +42,7 @@ def cast_fans(
     Returns:
         Ranges (m, b) [m], infinite where nothing is hit, and the geoms hit (m, b), there -1.
     """
-    geoms, kinds, sizes, owner_of, bodies, offsets, radii = shapes
+    geoms, _, _, owner_of, bodies, offsets, radii = shapes
     m, beams = origins.shape[0], cosines.shape[0]
     ranges = np.full((m, beams), np.inf)
     hits = np.full((m, beams), -1, dtype=np.int32)
@@ -63,51 +63,45 @@ def cast_fans(
         rise = reach * math.hypot(frames[i, 2, 0], frames[i, 2, 1])
         low = min(low, origins[i, 2] - rise)
         high = max(high, origins[i, 2] + rise)
-    centres = np.empty((geoms.shape[0], 3))
+    centres = _centres(bodies, offsets, body_pos, body_mat)
     kept = np.empty(geoms.shape[0], dtype=np.int64)
     count = 0
     for k in range(geoms.shape[0]):
-        b = bodies[k]
-        for r in range(3):
-            centres[k, r] = (
-                body_pos[b, r] + body_mat[b, 3 * r] * offsets[k, 0]
-                + body_mat[b, 3 * r + 1] * offsets[k, 1] + body_mat[b, 3 * r + 2] * offsets[k, 2]
-            )  # fmt: skip
         if centres[k, 2] - radii[k] <= high and centres[k, 2] + radii[k] >= low:
             kept[count] = k
             count += 1
     for i in range(m):
-        ox, oy, oz = origins[i]
-        x0, x1, x2 = frames[i, 0, 0], frames[i, 1, 0], frames[i, 2, 0]
-        y0, y1, y2 = frames[i, 0, 1], frames[i, 1, 1], frames[i, 2, 1]
-        z0, z1, z2 = frames[i, 0, 2], frames[i, 1, 2], frames[i, 2, 2]
+        o = (origins[i, 0], origins[i, 1], origins[i, 2])
+        x = (frames[i, 0, 0], frames[i, 1, 0], frames[i, 2, 0])
+        y = (frames[i, 0, 1], frames[i, 1, 1], frames[i, 2, 1])
+        z = (frames[i, 0, 2], frames[i, 1, 2], frames[i, 2, 2])
         best, hit = ranges[i], hits[i]
         best[:] = reach
         for n in range(count):
             k = kept[n]
             radius = radii[k]
-            v0, v1, v2 = centres[k, 0] - ox, centres[k, 1] - oy, centres[k, 2] - oz
-            square = v0 * v0 + v1 * v1 + v2 * v2
+            v = (centres[k, 0] - o[0], centres[k, 1] - o[1], centres[k, 2] - o[2])
+            square = _dot(v, v)
             if square > (reach + radius) ** 2:
                 continue
             if owner_of[k] >= 0 and owner_of[k] == owners[i]:
                 continue
-            above = v0 * z0 + v1 * z1 + v2 * z2
+            above = _dot(v, z)
             section = radius * radius - above * above
             if section < 0.0:
                 continue
-            ahead = v0 * x0 + v1 * x1 + v2 * x2
+            ahead = _dot(v, x)
             if behind == 0.0 and ahead < -radius:
                 continue
             near = math.sqrt(square) - radius - 1e-9
             flat = square - above * above
             if flat <= section * (1.0 + 1e-9):
                 _shape(
-                    k, kinds, sizes, geoms, geom_pos, geom_mat, ox, oy, oz, x0, x1, x2, y0, y1, y2,
-                    cosines, sines, 0, beams, near, best, hit,
+                    k, shapes, geom_pos, geom_mat, o, x, y, cosines, sines, 0, beams, near, best,
+                    hit,
                 )  # fmt: skip
                 continue
-            middle = math.atan2(v0 * y0 + v1 * y1 + v2 * y2, ahead)
+            middle = math.atan2(_dot(v, y), ahead)
             half = math.sqrt(section / flat)
             # of an angle whose sine is at most 1/2, pi / 3 times the sine is never less
             half = half * 1.0471976 if half <= 0.5 else math.asin(min(half, 1.0))
@@ -121,8 +115,8 @@ def cast_fans(
                 lo, hi = max(0, math.ceil(start)), min(beams, math.floor(stop) + 1)
                 if lo < hi:
                     _shape(
-                        k, kinds, sizes, geoms, geom_pos, geom_mat, ox, oy, oz, x0, x1, x2, y0, y1,
-                        y2, cosines, sines, lo, hi, near, best, hit,
+                        k, shapes, geom_pos, geom_mat, o, x, y, cosines, sines, lo, hi, near,
+                        best, hit,
                     )  # fmt: skip
         for j in range(beams):
             if hit[j] < 0:
@@ -146,39 +140,32 @@ def clear_segments(starts, ends, start_owners, end_owners, shapes, geom_pos, geo
         body_pos: The same.
         body_mat: The same.
     """
-    geoms, kinds, sizes, owner_of, bodies, offsets, radii = shapes
+    geoms, _, _, owner_of, bodies, offsets, radii = shapes
     clear = np.ones((starts.shape[0], ends.shape[0]), dtype=np.bool_)
-    centres = np.empty((geoms.shape[0], 3))
-    for k in range(geoms.shape[0]):
-        b = bodies[k]
-        for r in range(3):
-            centres[k, r] = (
-                body_pos[b, r] + body_mat[b, 3 * r] * offsets[k, 0]
-                + body_mat[b, 3 * r + 1] * offsets[k, 1] + body_mat[b, 3 * r + 2] * offsets[k, 2]
-            )  # fmt: skip
-    one, nil = np.ones(1), np.zeros(1)
+    centres = _centres(bodies, offsets, body_pos, body_mat)
+    one, nil, nowhere = np.ones(1), np.zeros(1), (0.0, 0.0, 0.0)
     best, hit = np.empty(1), np.empty(1, dtype=np.int32)
     for i in range(starts.shape[0]):
-        ox, oy, oz = starts[i]
+        o = (starts[i, 0], starts[i, 1], starts[i, 2])
         for j in range(ends.shape[0]):
-            d0, d1, d2 = ends[j, 0] - ox, ends[j, 1] - oy, ends[j, 2] - oz
-            length = d0 * d0 + d1 * d1 + d2 * d2
+            d = (ends[j, 0] - o[0], ends[j, 1] - o[1], ends[j, 2] - o[2])
+            length = math.sqrt(_dot(d, d))
             if length == 0.0:
                 continue
-            best[0], hit[0] = 1.0, -1
+            d = (d[0] / length, d[1] / length, d[2] / length)
+            best[0], hit[0] = length, -1
             for k in range(geoms.shape[0]):
-                v0, v1, v2 = centres[k, 0] - ox, centres[k, 1] - oy, centres[k, 2] - oz
-                along = min(max((v0 * d0 + v1 * d1 + v2 * d2) / length, 0.0), 1.0)
-                v0, v1, v2 = v0 - along * d0, v1 - along * d1, v2 - along * d2
-                if v0 * v0 + v1 * v1 + v2 * v2 > radii[k] * radii[k]:
+                v = (centres[k, 0] - o[0], centres[k, 1] - o[1], centres[k, 2] - o[2])
+                along = min(max(_dot(v, d), 0.0), length)
+                v = (v[0] - along * d[0], v[1] - along * d[1], v[2] - along * d[2])
+                if _dot(v, v) > radii[k] * radii[k]:
                     continue
                 owner = owner_of[k]
                 if owner >= 0 and (owner == start_owners[i] or owner == end_owners[j]):
                     continue
                 _shape(
-                    k, kinds, sizes, geoms, geom_pos, geom_mat, ox, oy, oz, d0, d1, d2, 0.0, 0.0,
-                    0.0, one, nil, 0, 1, -1.0, best, hit,
-                )  # fmt: skip
+                    k, shapes, geom_pos, geom_mat, o, d, nowhere, one, nil, 0, 1, -1.0, best, hit
+                )
                 if hit[0] >= 0:
                     clear[i, j] = False
                     break
@@ -246,39 +233,63 @@ def _along_normal(kind, size, p, d):
 
 
 @njit
-def _shape(k, kinds, sizes, geoms, geom_pos, geom_mat, ox, oy, oz, x0, x1, x2, y0, y1, y2,
-           cosines, sines, lo, hi, near, best, hit):  # fmt: skip
-    """Try beams lo to hi of a fan against shape k; directions are cosine * x + sine * y."""
+def _dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@njit
+def _centres(bodies, offsets, body_pos, body_mat):
+    """Middles of bounding spheres (p, 3), world frame."""
+    centres = np.empty(offsets.shape)
+    for k in range(bodies.shape[0]):
+        b = bodies[k]
+        for r in range(3):
+            centres[k, r] = (
+                body_pos[b, r] + body_mat[b, 3 * r] * offsets[k, 0]
+                + body_mat[b, 3 * r + 1] * offsets[k, 1] + body_mat[b, 3 * r + 2] * offsets[k, 2]
+            )  # fmt: skip
+    return centres
+
+
+@njit
+def _local(mats, g, v):
+    """A vector in the frame of geom g."""
+    return (
+        mats[g, 0] * v[0] + mats[g, 3] * v[1] + mats[g, 6] * v[2],
+        mats[g, 1] * v[0] + mats[g, 4] * v[1] + mats[g, 7] * v[2],
+        mats[g, 2] * v[0] + mats[g, 5] * v[1] + mats[g, 8] * v[2],
+    )
+
+
+@njit
+def _shape(
+    k, shapes, geom_pos, geom_mat, origin, ahead, left, cosines, sines, lo, hi, near, best, hit
+):
+    """Try beams lo to hi of a fan against shape k.
+
+    Their directions, of length 1, are cosine * ahead + sine * left. Those that something not
+    further away than ``near`` has stopped are passed over.
+    """
+    geoms, kinds, sizes = shapes[:3]
     g, kind = geoms[k], kinds[k]
-    r00, r01, r02 = geom_mat[g, 0], geom_mat[g, 1], geom_mat[g, 2]
-    r10, r11, r12 = geom_mat[g, 3], geom_mat[g, 4], geom_mat[g, 5]
-    r20, r21, r22 = geom_mat[g, 6], geom_mat[g, 7], geom_mat[g, 8]
-    p0, p1, p2 = ox - geom_pos[g, 0], oy - geom_pos[g, 1], oz - geom_pos[g, 2]
-    # origin and axes of the fan's plane in the frame of the shape
-    px, py, pz = r00 * p0 + r10 * p1 + r20 * p2, r01 * p0 + r11 * p1 + r21 * p2, (
-        r02 * p0 + r12 * p1 + r22 * p2
+    p = _local(
+        geom_mat, g,
+        (origin[0] - geom_pos[g, 0], origin[1] - geom_pos[g, 1], origin[2] - geom_pos[g, 2]),
     )  # fmt: skip
-    ax, ay, az = r00 * x0 + r10 * x1 + r20 * x2, r01 * x0 + r11 * x1 + r21 * x2, (
-        r02 * x0 + r12 * x1 + r22 * x2
-    )  # fmt: skip
-    bx, by, bz = r00 * y0 + r10 * y1 + r20 * y2, r01 * y0 + r11 * y1 + r21 * y2, (
-        r02 * y0 + r12 * y1 + r22 * y2
-    )  # fmt: skip
+    a, b = _local(geom_mat, g, ahead), _local(geom_mat, g, left)
     s0, s1, s2 = sizes[k, 0], sizes[k, 1], sizes[k, 2]
     if kind == BOX:
-        _box(
-            px, py, pz, ax, ay, az, bx, by, bz, s0, s1, s2, cosines, sines, lo, hi, near, best,
-            hit, g,
-        )  # fmt: skip
+        _box(p, a, b, s0, s1, s2, cosines, sines, lo, hi, near, best, hit, g)
         return
     if kind == SPHERE:
         s1, s2 = s0, s0
+    px, py, pz = p
     for j in range(lo, hi):
         if best[j] <= near:
             continue
         c, s = cosines[j], sines[j]
-        dx, dy, dz = c * ax + s * bx, c * ay + s * by, c * az + s * bz
-        if kind == SPHERE or kind == ELLIPSOID:
+        dx, dy, dz = c * a[0] + s * b[0], c * a[1] + s * b[1], c * a[2] + s * b[2]
+        if kind in (SPHERE, ELLIPSOID):
             u = _ball(px / s0, py / s1, pz / s2, dx / s0, dy / s1, dz / s2)
         elif kind == CYLINDER:
             u = _cylinder(px, py, pz, dx, dy, dz, s0, s1)
@@ -291,7 +302,8 @@ def _shape(k, kinds, sizes, geoms, geom_pos, geom_mat, ox, oy, oz, x0, x1, x2, y
 
 
 @njit
-def _box(px, py, pz, ax, ay, az, bx, by, bz, hx, hy, hz, cosines, sines, lo, hi, near, best, hit, g):
+def _box(p, a, b, hx, hy, hz, cosines, sines, lo, hi, near, best, hit, g):
+    px, py, pz = p
     # way to the face that looks at the origin along each axis, 0 where none does
     fx = hx - px if px > hx else (-hx - px if px < -hx else 0.0)
     fy = hy - py if py > hy else (-hy - py if py < -hy else 0.0)
@@ -303,7 +315,7 @@ def _box(px, py, pz, ax, ay, az, bx, by, bz, hx, hy, hz, cosines, sines, lo, hi,
         if t <= near:
             continue
         c, s = cosines[j], sines[j]
-        dx, dy, dz = c * ax + s * bx, c * ay + s * by, c * az + s * bz
+        dx, dy, dz = c * a[0] + s * b[0], c * a[1] + s * b[1], c * a[2] + s * b[2]
         if inside:
             u = min(
                 (math.copysign(hx, dx) - px) / dx if dx != 0.0 else np.inf,
@@ -396,8 +408,6 @@ def _plane(px, py, pz, dx, dy, dz, half_x, half_y):
     if pz <= 0.0 or dz >= -1e-15:
         return np.inf
     u = -pz / dz
-    if (half_x > 0.0 and abs(px + u * dx) > half_x) or (
-        half_y > 0.0 and abs(py + u * dy) > half_y
-    ):
+    if (half_x > 0.0 and abs(px + u * dx) > half_x) or (half_y > 0.0 and abs(py + u * dy) > half_y):
         return np.inf
     return u

@@ -47,9 +47,7 @@ class RayScene(Stage):
         self._table, rest = shape_table(model, self._owners)
         seen = seen_geoms(model)
         model.geom_group[:] = np.where(rest, _REST, np.where(seen, _KNOWN, _OUT))
-        self._own = [
-            np.flatnonzero((self._owners == k) & seen) for k in range(len(self.names))
-        ]
+        self._own = [np.flatnonzero((self._owners == k) & seen) for k in range(len(self.names))]
         self._bases = np.array([_base(model, name) for name in self.names])
         self._other_kinds = sorted({mujoco.mjtGeom(t).name for t in model.geom_type[rest]})
         names = np.array([model.mat(k).name for k in range(model.nmat)] + [""])
