@@ -13,9 +13,9 @@ import math
 import numpy as np
 
 from mjmr.jit import njit
+from mjmr.sensors.ray_shapes import BOX, CAPSULE, CYLINDER, ELLIPSOID, PLANE, try_shape
 
-# MuJoCo's mjtGeom
-PLANE, SPHERE, CAPSULE, ELLIPSOID, CYLINDER, BOX = 0, 2, 3, 4, 5, 6
+_SECTORS = 128
 
 
 @njit
@@ -64,12 +64,7 @@ def cast_fans(
         low = min(low, origins[i, 2] - rise)
         high = max(high, origins[i, 2] + rise)
     centres = _centres(bodies, offsets, body_pos, body_mat)
-    kept = np.empty(geoms.shape[0], dtype=np.int64)
-    count = 0
-    for k in range(geoms.shape[0]):
-        if centres[k, 2] - radii[k] <= high and centres[k, 2] + radii[k] >= low:
-            kept[count] = k
-            count += 1
+    kept, count = _between(low, high, centres, radii)
     for i in range(m):
         o = (origins[i, 0], origins[i, 1], origins[i, 2])
         x = (frames[i, 0, 0], frames[i, 1, 0], frames[i, 2, 0])
@@ -96,7 +91,7 @@ def cast_fans(
             near = math.sqrt(square) - radius - 1e-9
             flat = square - above * above
             if flat <= section * (1.0 + 1e-9):
-                _shape(
+                try_shape(
                     k, shapes, geom_pos, geom_mat, o, x, y, cosines, sines, 0, beams, near, best,
                     hit,
                 )  # fmt: skip
@@ -114,7 +109,7 @@ def cast_fans(
                     continue
                 lo, hi = max(0, math.ceil(start)), min(beams, math.floor(stop) + 1)
                 if lo < hi:
-                    _shape(
+                    try_shape(
                         k, shapes, geom_pos, geom_mat, o, x, y, cosines, sines, lo, hi, near,
                         best, hit,
                     )  # fmt: skip
@@ -140,13 +135,19 @@ def clear_segments(starts, ends, start_owners, end_owners, shapes, geom_pos, geo
         body_pos: The same.
         body_mat: The same.
     """
-    geoms, _, _, owner_of, bodies, offsets, radii = shapes
+    owner_of, bodies, offsets, radii = shapes[3:]
     clear = np.ones((starts.shape[0], ends.shape[0]), dtype=np.bool_)
+    if clear.size == 0:
+        return clear
     centres = _centres(bodies, offsets, body_pos, body_mat)
     one, nil, nowhere = np.ones(1), np.zeros(1), (0.0, 0.0, 0.0)
     best, hit = np.empty(1), np.empty(1, dtype=np.int32)
+    low = min(starts[:, 2].min(), ends[:, 2].min())
+    high = max(starts[:, 2].max(), ends[:, 2].max())
+    kept, count = _between(low, high, centres, radii)
     for i in range(starts.shape[0]):
         o = (starts[i, 0], starts[i, 1], starts[i, 2])
+        listed, begin = _by_bearing(o, kept[:count], centres, radii)
         for j in range(ends.shape[0]):
             d = (ends[j, 0] - o[0], ends[j, 1] - o[1], ends[j, 2] - o[2])
             length = math.sqrt(_dot(d, d))
@@ -154,7 +155,12 @@ def clear_segments(starts, ends, start_owners, end_owners, shapes, geom_pos, geo
                 continue
             d = (d[0] / length, d[1] / length, d[2] / length)
             best[0], hit[0] = length, -1
-            for k in range(geoms.shape[0]):
+            sector = int((math.atan2(d[1], d[0]) + math.pi) * (_SECTORS / (2.0 * math.pi)))
+            sector = min(sector, _SECTORS - 1)
+            if d[0] == 0.0 and d[1] == 0.0:
+                sector = _SECTORS  # straight up or down: every shape
+            for n in range(begin[sector], begin[sector + 1]):
+                k = listed[n]
                 v = (centres[k, 0] - o[0], centres[k, 1] - o[1], centres[k, 2] - o[2])
                 along = min(max(_dot(v, d), 0.0), length)
                 v = (v[0] - along * d[0], v[1] - along * d[1], v[2] - along * d[2])
@@ -163,13 +169,59 @@ def clear_segments(starts, ends, start_owners, end_owners, shapes, geom_pos, geo
                 owner = owner_of[k]
                 if owner >= 0 and (owner == start_owners[i] or owner == end_owners[j]):
                     continue
-                _shape(
+                try_shape(
                     k, shapes, geom_pos, geom_mat, o, d, nowhere, one, nil, 0, 1, -1.0, best, hit
                 )
                 if hit[0] >= 0:
                     clear[i, j] = False
                     break
     return clear
+
+
+@njit
+def _between(low, high, centres, radii):
+    """Shapes that may be met between two heights, and how many they are."""
+    kept = np.empty(radii.shape[0], dtype=np.int64)
+    count = 0
+    for k in range(radii.shape[0]):
+        if centres[k, 2] - radii[k] <= high and centres[k, 2] + radii[k] >= low:
+            kept[count] = k
+            count += 1
+    return kept, count
+
+
+@njit
+def _by_bearing(o, kept, centres, radii):
+    """Shapes of ``kept`` that each sector of bearings from a point may meet, and the lists' begins.
+
+    The list after the last sector's has every shape.
+    """
+    count = kept.shape[0]
+    scale = _SECTORS / (2.0 * math.pi)
+    low, high = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64)
+    sizes = np.zeros(_SECTORS + 2, dtype=np.int64)
+    for n in range(count):
+        k = kept[n]
+        x, y = centres[k, 0] - o[0], centres[k, 1] - o[1]
+        away = math.sqrt(x * x + y * y)
+        low[n], high[n] = 0, _SECTORS - 1
+        if away > radii[k]:
+            half = math.asin(radii[k] / away) + 1e-9
+            middle = math.atan2(y, x) + math.pi
+            low[n] = math.floor((middle - half) * scale)
+            high[n] = min(math.floor((middle + half) * scale), low[n] + _SECTORS - 1)
+        for sector in range(low[n], high[n] + 1):
+            sizes[sector % _SECTORS + 1] += 1
+    begin = np.cumsum(sizes)
+    listed = np.empty(begin[_SECTORS] + count, dtype=np.int64)
+    filled = begin[:-1].copy()
+    for n in range(count):
+        for sector in range(low[n], high[n] + 1):
+            listed[filled[sector % _SECTORS]] = kept[n]
+            filled[sector % _SECTORS] += 1
+        listed[begin[_SECTORS] + n] = kept[n]
+    begin[_SECTORS + 1] = begin[_SECTORS] + count
+    return listed, begin
 
 
 @njit
@@ -249,165 +301,3 @@ def _centres(bodies, offsets, body_pos, body_mat):
                 + body_mat[b, 3 * r + 1] * offsets[k, 1] + body_mat[b, 3 * r + 2] * offsets[k, 2]
             )  # fmt: skip
     return centres
-
-
-@njit
-def _local(mats, g, v):
-    """A vector in the frame of geom g."""
-    return (
-        mats[g, 0] * v[0] + mats[g, 3] * v[1] + mats[g, 6] * v[2],
-        mats[g, 1] * v[0] + mats[g, 4] * v[1] + mats[g, 7] * v[2],
-        mats[g, 2] * v[0] + mats[g, 5] * v[1] + mats[g, 8] * v[2],
-    )
-
-
-@njit
-def _shape(
-    k, shapes, geom_pos, geom_mat, origin, ahead, left, cosines, sines, lo, hi, near, best, hit
-):
-    """Try beams lo to hi of a fan against shape k.
-
-    Their directions, of length 1, are cosine * ahead + sine * left. Those that something not
-    further away than ``near`` has stopped are passed over.
-    """
-    geoms, kinds, sizes = shapes[:3]
-    g, kind = geoms[k], kinds[k]
-    p = _local(
-        geom_mat, g,
-        (origin[0] - geom_pos[g, 0], origin[1] - geom_pos[g, 1], origin[2] - geom_pos[g, 2]),
-    )  # fmt: skip
-    a, b = _local(geom_mat, g, ahead), _local(geom_mat, g, left)
-    s0, s1, s2 = sizes[k, 0], sizes[k, 1], sizes[k, 2]
-    if kind == BOX:
-        _box(p, a, b, s0, s1, s2, cosines, sines, lo, hi, near, best, hit, g)
-        return
-    if kind == SPHERE:
-        s1, s2 = s0, s0
-    px, py, pz = p
-    for j in range(lo, hi):
-        if best[j] <= near:
-            continue
-        c, s = cosines[j], sines[j]
-        dx, dy, dz = c * a[0] + s * b[0], c * a[1] + s * b[1], c * a[2] + s * b[2]
-        if kind in (SPHERE, ELLIPSOID):
-            u = _ball(px / s0, py / s1, pz / s2, dx / s0, dy / s1, dz / s2)
-        elif kind == CYLINDER:
-            u = _cylinder(px, py, pz, dx, dy, dz, s0, s1)
-        elif kind == CAPSULE:
-            u = _capsule(px, py, pz, dx, dy, dz, s0, s1)
-        else:
-            u = _plane(px, py, pz, dx, dy, dz, s0, s1)
-        if u < best[j]:
-            best[j], hit[j] = u, g
-
-
-@njit
-def _box(p, a, b, hx, hy, hz, cosines, sines, lo, hi, near, best, hit, g):
-    px, py, pz = p
-    # way to the face that looks at the origin along each axis, 0 where none does
-    fx = hx - px if px > hx else (-hx - px if px < -hx else 0.0)
-    fy = hy - py if py > hy else (-hy - py if py < -hy else 0.0)
-    fz = hz - pz if pz > hz else (-hz - pz if pz < -hz else 0.0)
-    inside = fx == 0.0 and fy == 0.0 and fz == 0.0
-    near = max(near, math.sqrt(fx * fx + fy * fy + fz * fz) - 1e-9)
-    for j in range(lo, hi):
-        t = best[j]
-        if t <= near:
-            continue
-        c, s = cosines[j], sines[j]
-        dx, dy, dz = c * a[0] + s * b[0], c * a[1] + s * b[1], c * a[2] + s * b[2]
-        if inside:
-            u = min(
-                (math.copysign(hx, dx) - px) / dx if dx != 0.0 else np.inf,
-                (math.copysign(hy, dy) - py) / dy if dy != 0.0 else np.inf,
-                (math.copysign(hz, dz) - pz) / dz if dz != 0.0 else np.inf,
-            )
-            if u < t:
-                best[j], hit[j] = u, g
-            continue
-        if fx * dx > 0.0:
-            u = fx / dx
-            if u < t and abs(py + u * dy) <= hy and abs(pz + u * dz) <= hz:
-                best[j], hit[j] = u, g
-                continue
-        if fy * dy > 0.0:
-            u = fy / dy
-            if u < t and abs(px + u * dx) <= hx and abs(pz + u * dz) <= hz:
-                best[j], hit[j] = u, g
-                continue
-        if fz * dz > 0.0:
-            u = fz / dz
-            if u < t and abs(px + u * dx) <= hx and abs(py + u * dy) <= hy:
-                best[j], hit[j] = u, g
-
-
-@njit
-def _ball(px, py, pz, dx, dy, dz):
-    """Way to the unit sphere, out of it from inside; infinite if none."""
-    a = dx * dx + dy * dy + dz * dz
-    b = px * dx + py * dy + pz * dz
-    c = px * px + py * py + pz * pz - 1.0
-    root = b * b - a * c
-    if root < 0.0 or (c > 0.0 and b >= 0.0):
-        return np.inf
-    root = math.sqrt(root)
-    return (-b - root) / a if c > 0.0 else (-b + root) / a
-
-
-@njit
-def _cylinder(px, py, pz, dx, dy, dz, radius, half):
-    a = dx * dx + dy * dy
-    b = px * dx + py * dy
-    c = px * px + py * py - radius * radius
-    root = b * b - a * c
-    if root < 0.0:
-        return np.inf
-    beyond = half - pz if pz > half else (-half - pz if pz < -half else 0.0)
-    if beyond == 0.0 and c <= 0.0:
-        out = (-b + math.sqrt(root)) / a if a > 0.0 else np.inf
-        return min(out, (math.copysign(half, dz) - pz) / dz if dz != 0.0 else np.inf)
-    if c > 0.0 and b < 0.0:
-        u = (-b - math.sqrt(root)) / a
-        if abs(pz + u * dz) <= half:
-            return u
-    if beyond * dz > 0.0:
-        u = beyond / dz
-        if (px + u * dx) ** 2 + (py + u * dy) ** 2 <= radius * radius:
-            return u
-    return np.inf
-
-
-@njit
-def _capsule(px, py, pz, dx, dy, dz, radius, half):
-    found = np.inf
-    a = dx * dx + dy * dy
-    b = px * dx + py * dy
-    root = b * b - a * (px * px + py * py - radius * radius)
-    if root >= 0.0 and a > 0.0:
-        for side in (-1.0, 1.0):
-            u = (-b + side * math.sqrt(root)) / a
-            if 0.0 <= u < found and abs(pz + u * dz) <= half:
-                found = u
-    a += dz * dz
-    for end in (-half, half):
-        q = pz - end
-        b = px * dx + py * dy + q * dz
-        root = b * b - a * (px * px + py * py + q * q - radius * radius)
-        if root < 0.0:
-            continue
-        for side in (-1.0, 1.0):
-            u = (-b + side * math.sqrt(root)) / a
-            if 0.0 <= u < found and (q + u * dz) * end >= 0.0:
-                found = u
-    return found
-
-
-@njit
-def _plane(px, py, pz, dx, dy, dz, half_x, half_y):
-    """From above alone; a size of 0 is no bound."""
-    if pz <= 0.0 or dz >= -1e-15:
-        return np.inf
-    u = -pz / dz
-    if (half_x > 0.0 and abs(px + u * dx) > half_x) or (half_y > 0.0 and abs(py + u * dy) > half_y):
-        return np.inf
-    return u
