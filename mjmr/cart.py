@@ -6,19 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mjmr.errors import InvalidInputError, UnknownNameError
-
-MATERIALS = ("plain", "mirror", "black")
-
-
-def check_material(name: str) -> None:
-    """Refuse what props and walls are not made of.
-
-    Raises:
-        UnknownNameError: Not one of ``MATERIALS``.
-    """
-    if name not in MATERIALS:
-        raise UnknownNameError("material", name, MATERIALS)
+from mjmr.errors import InvalidInputError
+from mjmr.materials import check_material
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,7 +30,7 @@ class Cart:
         start: Where on its cycle it is at time 0, 0 to 1; 0 is the lower end.
         mass: [kg].
         force: Most that its servo pushes [N].
-        material: As of :class:`mjmr.world.Box`.
+        material: One of ``mjmr.materials.MATERIALS``.
     """
 
     x: float

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mjmr.cart import MATERIALS, Cart, check_material
+from mjmr.cart import Cart
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.group import Group
+from mjmr.materials import check_material
 
 if TYPE_CHECKING:
     import mujoco
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
 
 FLOORS = ("carpet", "concrete")
 LIGHTINGS = ("even", "uneven")
-__all__ = ["FLOORS", "LIGHTINGS", "MATERIALS", "Ball", "Box", "World"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +39,8 @@ class Box:
         width: Across it [m].
         height: [m].
         mass: [kg]; None for a fixed box.
-        material: One of ``MATERIALS``; mirror and black return no light to lidars and infra-red.
+        material: One of ``mjmr.materials.MATERIALS``; ``mirror`` and ``black`` return no light to
+            lidars and infra-red rangers.
     """
 
     x: float
@@ -114,8 +115,7 @@ class World:
             lighting: One of ``LIGHTINGS``; uneven: a lamp near the lower left corner, which makes
                 that side of the floor about twice as bright as the other.
             overlap: Whether robots may start inside each other, which contact then drives apart.
-            wall_material: One of ``MATERIALS``; mirror and black return no light to lidars and
-                infra-red rangers.
+            wall_material: As a :class:`Box`'s material.
 
         Raises:
             InvalidInputError: Bounds without area.

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 # as RayScene has them, which loads MuJoCo
 METHODS = ("auto", "compiled", "mujoco")
+_HOUSING = (0.1, 0.1, 0.1)  # m
 
 
 class Lidar(Sensor):
@@ -82,7 +83,8 @@ class Lidar(Sensor):
             yaw: Of the middle beam there [rad].
             housing: Length, width and height [m] of the scanner's body, a box that stands on the
                 mount and that others see and touch; the beams leave from its middle. Its mass is
-                taken to be in the robot's. None: none, and beams leave from the mount itself.
+                taken to be in the robot's. Default: a cube of 0.1 m on a site; none at a position,
+                where the beams leave from the position itself.
             method: How rays are cast, see :class:`mjmr.sensors.ray_scene.RayScene`.
 
         Raises:
@@ -116,6 +118,8 @@ class Lidar(Sensor):
             )
         if yaw and position is None:
             raise InvalidInputError("a site has a heading of its own; yaw goes with a position")
+        if housing is None and position is None:
+            housing = _HOUSING
         self._housing = None if housing is None else np.array(housing, dtype=np.float64)
         if self._housing is not None and not (
             self._housing.shape == (3,) and (self._housing > 0).all()
@@ -245,8 +249,7 @@ class Lidar(Sensor):
         ranges, hits, _ = scene.cast(
             origins, frames, self._rows, self.angles, self.max_range, self.method
         )
-        if scene.dark.any():
-            ranges[scene.dark[hits] & (hits >= 0)] = np.inf
+        scene.drop_dark(ranges, hits)
         return self.errors.apply(ranges, self._streams, number)
 
     def nothing(self) -> Array:

@@ -168,8 +168,8 @@ class Ranger(Sensor):
         # an angle at the very limit still returns
         assert cosines is not None
         ranges[cosines < math.cos(self.max_incidence) - 1e-9] = np.inf
-        if self._light and scene.dark.any():
-            ranges[scene.dark[hits] & (hits >= 0)] = np.inf
+        if self._light:
+            scene.drop_dark(ranges, hits)
         nearest = ranges.reshape(self._group.n, len(self._names), -1).min(axis=2)
         return self.errors.apply(nearest, self._streams, number)
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mjmr.errors import InvalidInputError, UnknownNameError
+from mjmr.materials import DARK
 from mjmr.sensors.ray_kernels import cast_fans, clear_segments, incidence
 from mjmr.sensors.shape_table import geom_owners, seen_geoms, shape_table
 from mjmr.sensors.stage import Stage
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from mjmr.loop import TickedSimulation
 
 Array = NDArray[np.float64]
-DARK = ("mirror", "black")  # materials
 METHODS = ("auto", "compiled", "mujoco")
 # groups of the private model that MuJoCo's rays go by
 _REST, _KNOWN, _OUT = 0, 1, 5
@@ -34,7 +34,6 @@ class RayScene(Stage):
 
     Attributes:
         names: Of the robots, which are "owners" by their index.
-        dark: Geoms that return no light (ngeom,): their material is called ``mirror`` or ``black``.
     """
 
     def __init__(self, simulation: "TickedSimulation"):
@@ -51,7 +50,8 @@ class RayScene(Stage):
         self._bases = np.array([_base(model, name) for name in self.names])
         self._other_kinds = sorted({mujoco.mjtGeom(t).name for t in model.geom_type[rest]})
         names = np.array([model.mat(k).name for k in range(model.nmat)] + [""])
-        self.dark = np.isin(names, DARK)[model.geom_matid]
+        dark = np.isin(names, DARK)[model.geom_matid]
+        self._dark = dark if dark.any() else None
         data = self.data
         # live views, which stay where they are
         self._places = (data.geom_xpos, data.geom_xmat, data.xpos, data.xmat)
@@ -137,6 +137,11 @@ class RayScene(Stage):
                     None if slopes is None else slopes[i],
                 )  # fmt: skip
         return ranges, hits, slopes
+
+    def drop_dark(self, ranges: Array, hits: NDArray[np.int32]) -> None:
+        """Make ranges (m, b) infinite where what was hit is of a material that returns no light."""
+        if self._dark is not None:
+            ranges[self._dark[hits] & (hits >= 0)] = np.inf
 
     def clear(
         self,

@@ -5,12 +5,15 @@ import math
 import mujoco
 import numpy as np
 import pytest
+from scipy.stats import qmc
 
 from mjmr.cart import Cart
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.kinematics import KinematicSimulation
 from mjmr.robots import Pioneer2DX, SoccerBot
 from mjmr.sensors.lidar import Lidar
+from mjmr.sensors.line_of_sight import LineOfSight
+from mjmr.sensors.rangers import Sonar
 from mjmr.simulation import Simulation
 from mjmr.world import Box, World
 from tests.mjmr.rays import crowded, hall, rectangle, to_edges
@@ -179,7 +182,10 @@ def test_a_mesh_is_seen_by_auto_and_mujoco_and_refused_by_compiled():
     robots = world.add_group(Pioneer2DX, [[0, 0, 0]])
     for method in ("auto", "mujoco", "compiled"):
         robots.mount(Lidar(position=(0, 0, 0.15), method=method), method)
+    robots.mount(Sonar())
     tick(Simulation(world, control_period=0.1))
+    # its front is upright, and met within the sonar's 25 degrees
+    assert robots.sonar.read()[0, 3:5] == pytest.approx(1.77, abs=0.01)
     assert robots.auto.read()[0, 90] == pytest.approx(2.0, abs=1e-3)
     np.testing.assert_allclose(robots.auto.read(), robots.mujoco.read(), atol=1e-12)
     with pytest.raises(InvalidInputError, match="mjGEOM_MESH"):
@@ -210,6 +216,14 @@ def test_a_housing_is_seen_and_touched_and_holds_the_optics():
     np.testing.assert_allclose(2 * housing.size, [0.156, 0.155, 0.210])
     np.testing.assert_allclose(housing.pos, [0.1, 0.0, 0.22 + 0.105])
     assert model.body_subtreemass[model.body("pioneer2dx0/base").id] == pytest.approx(9.0)
+
+
+def test_robots_with_lidars_on_top_see_each_other_without_options():
+    world = hall()
+    robots = world.add_group(Pioneer2DX, [[-1, 0, 0], [1, 0, np.pi]])
+    robots.mount(Lidar())
+    tick(Simulation(world, control_period=0.1))
+    assert robots.lidar.read()[:, 90] == pytest.approx(2.0 - 2 * 0.1 - 0.05, abs=1e-3)
 
 
 @pytest.mark.parametrize("material", ["mirror", "black"])
@@ -336,6 +350,31 @@ def test_same_seed_same_bits_whoever_reads_and_after_a_restore():
     robots.lidar.read()
     third, robots = spoiled()
     assert every.tobytes() != watch(Simulation(third, seed=4), robots).tobytes()
+
+
+def test_ray_sensors_survive_halton_noise_on_all_actuators():
+    """1 s, housings on top, pushed about: zero warnings, and every sample is one."""
+    world, pioneers, bots = crowded(3)
+    pioneers.mount(Lidar.lms200())
+    pioneers.mount(Sonar(rate=60.0))
+    pioneers.mount(LineOfSight())
+    bots.mount(Lidar.urg04lx(at="top", latency=0.0))
+    simulation = Simulation(world, control_period=0.25)
+    data = simulation.data
+    noise = iter(qmc.Halton(simulation.model.nu, rng=3).random(400))
+
+    def shake():
+        data.ctrl[:] = 400.0 * (next(noise) - 0.5)
+
+    simulation.watch_steps(shake)
+    for _ in simulation.ticks(1.0):
+        for sensor in (pioneers.lidar, pioneers.sonar, bots.lidar):
+            ranges = sensor.read()
+            late = np.isnan(sensor.sampled_at)
+            assert np.isnan(ranges).all() if late else not np.isnan(ranges).any()
+        assert pioneers.line_of_sight.read()[np.arange(12), np.arange(12)].all()
+    assert data.warning.number.sum() == 0
+    assert np.hypot(*simulation.truth.twists(pioneers).T[:2]).max() > 0.05
 
 
 def test_presets_have_the_numbers_of_their_sources():
