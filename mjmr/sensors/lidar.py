@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.sensors.base import Sensor
 from mjmr.sensors.mount import carrier_model, site_place
-from mjmr.sensors.range_errors import RangeErrors, fan_angles
+from mjmr.sensors.range_errors import METHODS, RangeErrors, fan_angles
 
 if TYPE_CHECKING:
     import mujoco
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from mjmr.group import Group
 
 Array = NDArray[np.float64]
-# as RayScene has them, which loads MuJoCo
-METHODS = ("auto", "compiled", "mujoco")
 _HOUSING = (0.1, 0.1, 0.1)  # m
 
 

@@ -10,6 +10,7 @@ from mjmr.errors import InvalidInputError
 from mjmr.randomness import SampleNoise
 
 Array = NDArray[np.float64]
+METHODS = ("auto", "compiled", "mujoco")  # of casting rays, see RayScene
 
 
 def fan_angles(beams: int, width: float) -> Array:

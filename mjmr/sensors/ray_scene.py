@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.materials import DARK
+from mjmr.sensors.range_errors import METHODS
 from mjmr.sensors.ray_kernels import cast_fans, clear_segments, incidence
 from mjmr.sensors.shape_table import geom_owners, seen_geoms, shape_table
 from mjmr.sensors.stage import Stage
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from mjmr.loop import TickedSimulation
 
 Array = NDArray[np.float64]
-METHODS = ("auto", "compiled", "mujoco")
 # groups of the private model that MuJoCo's rays go by
 _REST, _KNOWN, _OUT = 0, 1, 5
 

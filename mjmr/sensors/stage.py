@@ -26,6 +26,8 @@ class Stage:
         world, team = simulation.world, simulation.team
         model: Any = getattr(simulation, "model", None)
         self._drives: list[Any] = []
+        # sensors that move parts of the robots
+        self._actuated: list[Any] = getattr(simulation, "actuated", [])
         if model is None:
             model = world.spec().compile()
             self._drives = [
@@ -39,9 +41,11 @@ class Stage:
         """Put everything where it was when ``simulation.visible_state()`` returned ``state``."""
         data, model = self.data, self.model
         if self._drives:
-            time, poses = state
+            time, poses, *parts = state
             for rows, drive in self._drives:
                 drive.place(data, poses[rows])
+            for sensor, moved in zip(self._actuated, parts, strict=False):
+                sensor.place(data, moved)
             self._carts.place(data, time)
         else:
             data.qpos[:], data.mocap_pos[:], data.mocap_quat[:] = state
