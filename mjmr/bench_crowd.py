@@ -41,7 +41,7 @@ def crowd(seconds: int = 6, sizes: tuple[int, ...] = (1, 10, 50, 200)) -> str:
     ]
     for n in sizes:
         jobs = {
-            "bare mj_step, 5 ms": bare(n, 0.005, seconds + 1),
+            "bare mj_step, 5 ms": bare(n, 0.005, seconds + 1)[0],
             "A blind, 5 ms": loop(n, 0.005, False),
             "B lidars, 5 ms": loop(n, 0.005, True),
             "B lidars, 10 ms": loop(n, 0.010, True),
@@ -94,8 +94,12 @@ def loop(
     return _advance(*build(n, dt, sees, wide=wide, light=light))
 
 
-def bare(n: int, dt: float, seconds: int) -> Callable[[], float]:
-    """The physics of the blind variant alone: mj_step's under the same set points."""
+def bare(n: int, dt: float, seconds: int) -> tuple[Callable[[], float], Any]:
+    """The physics of the blind variant alone: mj_step's under the same set points.
+
+    Returns:
+        What advances it by a second, at most ``seconds`` times, and MuJoCo's data.
+    """
     import mujoco
 
     simulation, robots = build(n, dt, False)
@@ -122,7 +126,7 @@ def bare(n: int, dt: float, seconds: int) -> Callable[[], float]:
             mujoco.mj_step(model, data, simulation.substeps)
         return time.process_time() - start
 
-    return run
+    return run, data
 
 
 def build(
