@@ -110,7 +110,7 @@ class World:
         Args:
             bounds: Inner faces of the wall ``(xmin, ymin, xmax, ymax)`` [m], world frame.
             field: Rectangle of a marked playing field, same form, or None.
-            wall_height: [m].
+            wall_height: [m]; lidars and rangers mounted higher look over it.
             floor: One of ``FLOORS``; carpet carries field lines when there is a field.
             lighting: One of ``LIGHTINGS``; uneven: a lamp near the lower left corner, which makes
                 that side of the floor about twice as bright as the other.
