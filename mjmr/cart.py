@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mjmr.errors import InvalidInputError
+from mjmr.materials import check_material
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,6 +30,7 @@ class Cart:
         start: Where on its cycle it is at time 0, 0 to 1; 0 is the lower end.
         mass: [kg].
         force: Most that its servo pushes [N].
+        material: One of ``mjmr.materials.MATERIALS``.
     """
 
     x: float
@@ -43,8 +45,10 @@ class Cart:
     start: float = 0.0
     mass: float = 20.0
     force: float = 200.0
+    material: str = "plain"
 
     def __post_init__(self):
+        check_material(self.material)
         for name in (
             "length",
             "width",

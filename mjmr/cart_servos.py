@@ -39,7 +39,7 @@ def add_cart(spec: mujoco.MjSpec, name: str, cart: Cart) -> None:
         type=mujoco.mjtGeom.mjGEOM_BOX,
         size=half,
         mass=cart.mass,
-        material="cart",
+        material="cart" if cart.material == "plain" else cart.material,
         friction=[0.3, 0.005, 0.0001],
         group=0,
     )

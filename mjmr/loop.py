@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from mjmr.group import Group
     from mjmr.radio import Radio
     from mjmr.sensors.base import Sensor
+    from mjmr.sensors.ray_scene import RayScene
     from mjmr.sensors.studio import Studio
     from mjmr.world import World
 
@@ -130,6 +131,7 @@ class TickedSimulation(ABC):
         self._observers: list[Callable[[], None]] = []
         self._started = False
         self._studio: Studio | None = None
+        self._rays: RayScene | None = None
 
     def _bind(self) -> None:
         """Take the groups and their sensors; called at the end of a subclass's __init__."""
@@ -196,6 +198,15 @@ class TickedSimulation(ABC):
 
             self._studio = Studio(self)
         return self._studio
+
+    @property
+    def rays(self) -> "RayScene":
+        """Where this simulation's ray-based sensors cast their rays; made when first used."""
+        if self._rays is None:
+            from mjmr.sensors.ray_scene import RayScene
+
+            self._rays = RayScene(self)
+        return self._rays
 
     def close(self) -> None:
         """Free the GL contexts of cameras; the next picture opens new ones.

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from mjmr.cart import Cart
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.group import Group
+from mjmr.materials import check_material
 
 if TYPE_CHECKING:
     import mujoco
@@ -38,6 +39,8 @@ class Box:
         width: Across it [m].
         height: [m].
         mass: [kg]; None for a fixed box.
+        material: One of ``mjmr.materials.MATERIALS``; ``mirror`` and ``black`` return no light to
+            lidars and infra-red rangers.
     """
 
     x: float
@@ -47,8 +50,10 @@ class Box:
     width: float
     height: float = 0.3
     mass: float | None = None
+    material: str = "plain"
 
     def __post_init__(self):
+        check_material(self.material)
         if min(self.length, self.width, self.height) <= 0:
             raise InvalidInputError(
                 f"a box needs a positive length, width and height; got "
@@ -98,21 +103,23 @@ class World:
         floor: str = "carpet",
         lighting: str = "even",
         overlap: bool = False,
+        wall_material: str = "plain",
     ):
         """Declare an empty world.
 
         Args:
             bounds: Inner faces of the wall ``(xmin, ymin, xmax, ymax)`` [m], world frame.
             field: Rectangle of a marked playing field, same form, or None.
-            wall_height: [m].
+            wall_height: [m]; lidars and rangers mounted higher look over it.
             floor: One of ``FLOORS``; carpet carries field lines when there is a field.
             lighting: One of ``LIGHTINGS``; uneven: a lamp near the lower left corner, which makes
                 that side of the floor about twice as bright as the other.
             overlap: Whether robots may start inside each other, which contact then drives apart.
+            wall_material: As a :class:`Box`'s material.
 
         Raises:
             InvalidInputError: Bounds without area.
-            UnknownNameError: Unknown floor or lighting.
+            UnknownNameError: Unknown floor, lighting or material.
         """
         self.bounds = _rectangle(bounds, "bounds")
         self.field = None if field is None else _rectangle(field, "field")
@@ -121,7 +128,9 @@ class World:
             raise UnknownNameError("floor", floor, FLOORS)
         if lighting not in LIGHTINGS:
             raise UnknownNameError("lighting", lighting, LIGHTINGS)
+        check_material(wall_material)
         self.floor, self.lighting, self.overlap = floor, lighting, overlap
+        self.wall_material = wall_material
         self.props: list[Box | Ball | Cart] = []
         self.groups: list[Group] = []
         self.sensors: dict[str, Sensor] = {}

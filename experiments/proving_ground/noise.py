@@ -5,16 +5,16 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from mjmr.sensors.bumper import Bumper
-from mjmr.sensors.compass import Compass
-from mjmr.sensors.imu import IMU
-from mjmr.sensors.lidar import Lidar
 from scipy.stats import qmc
 
 from experiments.proving_ground.course import ALL, Metrics, hall, sheet
 from mjmr.claims import Bound, Claim
 from mjmr.randomness import Streams
 from mjmr.robots import platform_class
+from mjmr.sensors.bumper import Bumper
+from mjmr.sensors.compass import Compass
+from mjmr.sensors.imu import IMU
+from mjmr.sensors.lidar import Lidar
 from mjmr.sensors.localizer import Localizer
 from mjmr.simulation import Simulation
 

@@ -9,8 +9,11 @@ from mjmr.sensors.compass import Compass
 from mjmr.sensors.encoders import WheelEncoders
 from mjmr.sensors.force_torque import ForceTorque
 from mjmr.sensors.imu import IMU
+from mjmr.sensors.lidar import Lidar
+from mjmr.sensors.line_of_sight import LineOfSight
 from mjmr.sensors.localizer import Localizer
 from mjmr.sensors.pan_tilt import PanTilt
+from mjmr.sensors.rangers import InfraredRanger, Sonar
 
 __all__ = [
     "Bumper",
@@ -20,8 +23,12 @@ __all__ = [
     "Compass",
     "ForceTorque",
     "IMU",
+    "InfraredRanger",
+    "Lidar",
+    "LineOfSight",
     "Localizer",
     "PanTilt",
     "Sensor",
+    "Sonar",
     "WheelEncoders",
 ]

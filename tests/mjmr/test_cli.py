@@ -71,6 +71,7 @@ BAD = {
     "mjcf toy a.xml mode=metric,physical": "mode takes one value here",
     "mjcf toy nowhere/a.xml": "cannot write nowhere/a.xml",
     "bench tyo": "unknown study 'tyo'",
+    "bench --size hug": "unknown size 'hug'; valid: ",
     "export toy a.csv": "no results in renders/toy/quick; make them with mjmr run",
     "export toy a.csv --size hug": "unknown size 'hug'",
     "export toy a.xlsx": "a file to export to ends in .csv or .parquet, not a.xlsx",

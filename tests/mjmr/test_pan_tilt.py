@@ -208,7 +208,7 @@ def test_points_are_found_where_they_are_projected(aim, kind):
         robots.pan_tilt.aim(*aim)
     images = robots.camera.read()
     # as pictured: a kinematic simulation shows robots as deep and as tilted as contact carries them
-    scene = simulation.data if kind is Simulation else simulation.studio._data
+    scene = simulation.data if kind is Simulation else simulation.studio.data
     bodies = [scene.body(f"{prefix}base") for prefix in robots.prefixes]
     bases = [np.concatenate([b.xpos, b.xquat]) for b in bodies]
     for i, image in enumerate(images):
