@@ -18,7 +18,7 @@ from mjmr.sensors.lidar import Lidar
 from mjmr.sensors.localizer import Localizer
 from mjmr.simulation import Simulation
 
-SECONDS, HOLD = 1.0, 5  # steps a value is held
+SECONDS, HOLD = 1.0, 20  # s, steps a value is held
 
 
 def noise(condition: Mapping[str, Any], seed: int) -> Metrics:
@@ -55,10 +55,16 @@ def noise(condition: Mapping[str, Any], seed: int) -> Metrics:
 
 
 def _ranges(model: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Of every actuator; what has no range, a ramped speed, gets +-10 a second."""
+    """Lowest and highest control of every actuator.
+
+    Ramped servos have no range of their own: theirs takes the set point in 50 ms as far as what
+    saturates the motor.
+    """
     limited = model.actuator_ctrllimited.astype(bool)
-    low = np.where(limited, model.actuator_ctrlrange[:, 0], -10.0)
-    high = np.where(limited, model.actuator_ctrlrange[:, 1], 10.0)
+    gain, most = model.actuator_gainprm[:, 0], model.actuator_forcerange[:, 1]
+    ramp = np.where(most > 0, most / np.where(gain > 0, gain, 1.0) / 0.05, 10.0)
+    low = np.where(limited, model.actuator_ctrlrange[:, 0], -ramp)
+    high = np.where(limited, model.actuator_ctrlrange[:, 1], ramp)
     return low, high
 
 
