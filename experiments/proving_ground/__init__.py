@@ -51,6 +51,8 @@ study = Study(
     film=f"{_HERE}.film:film",
     plots=f"{_HERE}.plots:plots",
     world=f"{_HERE}.film:world",
+    bench=f"{_HERE}.bench:bench",
     prepare=f"{_HERE}.trial:prepare",
     verdicts=Path(__file__).with_name("verdicts.json"),
+    figures=Path(__file__).with_name("figures.json"),
 )
