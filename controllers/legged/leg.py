@@ -107,12 +107,12 @@ class LegGeometry:
         angle, reached = self.solve(feet)
         if not reached.all():
             bad = np.argwhere(~reached)
-            first = tuple(int(i) for i in bad[0])
-            x, y, z = 1e3 * np.asarray(feet, dtype=np.float64)[first]
-            row = f" of row {first[:-1]}" if len(first) > 1 else ""
+            *row, leg = bad[0].tolist()
+            x, y, z = 1e3 * np.asarray(feet, dtype=np.float64)[(*row, leg)]
+            where = f" of row {tuple(row)}" if row else ""
             more = f", nor {len(bad) - 1} others" if len(bad) > 1 else ""
             raise UnreachableError(
-                f"foot {LEGS[first[-1]]}{row} cannot reach ({x:.0f}, {y:.0f}, {z:.0f}) mm within "
+                f"foot {LEGS[leg]}{where} cannot reach ({x:.0f}, {y:.0f}, {z:.0f}) mm within "
                 f"its joints' limits{more}; body frame, x forward, y left, z up from the hips"
             )
         return angle

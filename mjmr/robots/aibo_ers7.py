@@ -82,7 +82,7 @@ class AiboERS7(Platform):
     title = "Sony AIBO ERS-7"
     grade = "C"
     command_names = tuple(joint.name for joint in JOINTS)
-    radius = 0.2
+    radius = 0.18
     height = 0.28
     max_twist = (0.42, 2.8)
     braking = 1.0
