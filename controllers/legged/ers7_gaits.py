@@ -21,6 +21,15 @@ _FORWARD = GaitSet(
     out=(0.013, 0.028),
     clipped=True,
 )
+_BACKWARD = GaitSet(
+    period=0.536,
+    duty=(0.38, 0.477),
+    height=(0.0872, 0.0977),
+    lift=(0.012, 0.012),
+    ahead=(0.0404, -0.0033),
+    out=(0.0242, 0.0159),
+    gain=1.064,
+)
 _SIDEWAYS = GaitSet(
     period=0.524,
     duty=(0.451, 0.472),
@@ -30,16 +39,17 @@ _SIDEWAYS = GaitSet(
     out=(0.033, 0.027),
 )
 _TURNING = GaitSet(
-    period=0.563,
-    duty=(0.451, 0.452),
-    height=(0.088, 0.106),
-    lift=(0.010, 0.010),
-    ahead=(0.027, 0.012),
-    out=(0.028, 0.014),
+    period=0.411,
+    duty=(0.38, 0.38),
+    height=(0.0983, 0.0956),
+    lift=(0.012, 0.0122),
+    ahead=(0.019, 0.0),
+    out=(0.0226, 0.0275),
+    gain=1.151,
 )
 ERS7_TROT = Trot(
     forward=_FORWARD,
-    backward=_FORWARD,
+    backward=_BACKWARD,
     sideways=_SIDEWAYS,
     turning=_TURNING,
     full=(0.42, 0.25, 0.185, 2.8),
