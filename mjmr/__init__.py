@@ -38,6 +38,7 @@ _WHERE = {
     "KinematicSimulation": "mjmr.kinematics",
     "Localizer": "mjmr.sensors.localizer",
     "MjmrError": "mjmr.errors",
+    "MotionStatus": "mjmr.sensors.motion_status",
     "Pioneer2DX": "mjmr.robots.pioneer2dx",
     "Recording": "mjmr.recording",
     "Simulation": "mjmr.simulation",
