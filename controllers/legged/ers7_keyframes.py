@@ -62,7 +62,7 @@ ERS7_OFF_LEFT = _sequence(
         (-17.2, -66.9, 20),
     ),
     (
-        0.211,
+        0.360,
         (-18.9, 35.8, 15.2),
         (-5.4, 78.1, 44.5),
         (-18.9, 35.8, 15.2),
@@ -73,7 +73,7 @@ ERS7_OFF_LEFT = _sequence(
 )
 
 ERS7_OFF_RIGHT = mirrored(ERS7_OFF_LEFT)
-# from the back to the belly
+# from the back to the belly, over the right side
 ERS7_OFF_BACK = _sequence(
     (0.559, (5.9, -10, -25), (130, -10, -25), (5.9, -10, -25), (115, -10, -25), (-17.2, 70.4, 20)),
     (
@@ -85,7 +85,7 @@ ERS7_OFF_BACK = _sequence(
         (-17.2, -63.9, 20),
     ),
     (
-        0.270,
+        0.420,
         (25.4, 77.5, -10.1),
         (25.9, 88, 105.9),
         (25.4, 77.5, -10.1),
@@ -180,7 +180,11 @@ _HEAD_LEFT = _sequence(
 
 
 ERS7_GET_UP = GetUpPlan(
-    stand=ERS7_STAND_UP, off_left=ERS7_OFF_LEFT, off_right=ERS7_OFF_RIGHT, off_back=ERS7_OFF_BACK
+    stand=ERS7_STAND_UP,
+    off_left=ERS7_OFF_LEFT,
+    off_right=ERS7_OFF_RIGHT,
+    off_back_left=mirrored(ERS7_OFF_BACK),
+    off_back_right=ERS7_OFF_BACK,
 )
 # by their codes in controllers/legged/motion.py
 ERS7_KICKS = {

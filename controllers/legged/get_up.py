@@ -22,14 +22,17 @@ class GetUpPlan:
         stand: With its belly down.
         off_left: From its left side to the belly.
         off_right: From its right side.
-        off_back: From its back.
+        off_back_left: From its back, when that leans to the left; keyframes that roll a robot
+            over its left side would fight its weight otherwise.
+        off_back_right: The same to the right.
         tries: Most times that it begins from wherever it lies.
     """
 
     stand: Keyframes
     off_left: Keyframes
     off_right: Keyframes
-    off_back: Keyframes
+    off_back_left: Keyframes
+    off_back_right: Keyframes
     tries: int = 5
 
     def __post_init__(self):
@@ -39,7 +42,8 @@ class GetUpPlan:
     @property
     def sequences(self) -> tuple[Keyframes, ...]:
         """In the order :class:`GetUp` expects them in its player."""
-        return self.stand, self.off_left, self.off_right, self.off_back
+        backs = self.off_back_left, self.off_back_right
+        return self.stand, self.off_left, self.off_right, *backs
 
 
 class GetUp:
@@ -75,11 +79,14 @@ class GetUp:
         self.tries = np.where(mask, 0, self.tries)
         self._player.stop(mask)
 
-    def decide(self, posture: NDArray[np.int64], angles: Array) -> tuple[Mask, Mask]:
+    def decide(
+        self, posture: NDArray[np.int64], leans_right: Mask, angles: Array
+    ) -> tuple[Mask, Mask]:
         """Start the next sequences, where one is due.
 
         Args:
             posture: Of each robot (n,).
+            leans_right: Whether each robot's right side is lower than its left (n,).
             angles: Their targets now (n, j) [rad].
 
         Returns:
@@ -89,7 +96,7 @@ class GetUp:
         due = self.active & ~self._player.playing
         stood = due & (now == self._stand)
         up = stood & (posture == STANDING)
-        choice = self._choice[posture]
+        choice = self._choice[posture] + ((posture == BACK) & leans_right)
         # standing up after a roll belongs to the same try
         fresh = (choice != self._stand) | stood | (self.tries == 0)
         again = due & ~up

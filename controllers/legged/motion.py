@@ -190,7 +190,9 @@ class BoundAiboMotion:
         self._down = np.where(upright, 0, self._down + 1)
         self._finish_actions()
         self._begin_actions(np.rint(command[:, 6]).astype(np.int64), upright)
-        up, given_up = self._get_up.decide(self.posture, self._targets)
+        up, given_up = self._get_up.decide(
+            self.posture, self._posture.up[:, 1] > 0.0, self._targets
+        )
         self.status = np.where(up, WALKING, np.where(given_up, GIVEN_UP, self.status))
         whole = self.status == GETTING_UP
         whole |= self.status == KICKING

@@ -9,24 +9,25 @@ from controllers.legged.posture import BACK, FRONT, LEFT, RIGHT, STANDING
 from mjmr.errors import InvalidInputError
 
 FRAME = 0.008
-STAND, OFF_LEFT, OFF_RIGHT, OFF_BACK = range(1, 5)  # in the player below
+NAMES = ("stand", "off_left", "off_right", "off_back_left", "off_back_right")
+STAND, OFF_LEFT, OFF_RIGHT, OFF_BACK, OFF_BACK_RIGHT = range(1, 6)  # in the player below
 
 
 def robots(n, tries=5):
     kick, *rest = (
-        Keyframes(angles=[[float(k)]], seconds=[5 * FRAME], stepped=True) for k in range(5)
+        Keyframes(angles=[[float(k)]], seconds=[5 * FRAME], stepped=True) for k in range(6)
     )
-    plan = GetUpPlan(stand=rest[0], off_left=rest[1], off_right=rest[2], off_back=rest[3])
+    plan = GetUpPlan(**dict(zip(NAMES, rest, strict=True)))
     player = KeyframePlayer([kick, *plan.sequences], n, frame=FRAME)
     return GetUp(player, 1, n, tries), player
 
 
-def run(get_up, player, postures):
+def run(get_up, player, postures, right=False):
     """What is played in each frame while postures are as told, and who stands or gave up."""
     played, up, over = [], [], []
     angles = np.zeros((len(postures[0]), 1))
     for posture in postures:
-        stands, given_up = get_up.decide(np.array(posture), angles)
+        stands, given_up = get_up.decide(np.array(posture), np.full(len(posture), right), angles)
         up.append(stands)
         over.append(given_up)
         played.append(player.sequence.copy())
@@ -44,6 +45,16 @@ def test_the_first_sequence_is_for_how_it_lies(posture, first):
     played, *_ = run(get_up, player, [[posture]])
     assert played[0, 0] == first
     assert get_up.tries.tolist() == [1]
+
+
+@pytest.mark.parametrize(
+    ("posture", "first"), [(BACK, OFF_BACK_RIGHT), (LEFT, OFF_LEFT), (STANDING, STAND)]
+)
+def test_a_robot_on_its_back_rolls_to_where_it_leans(posture, first):
+    get_up, player = robots(1)
+    get_up.start(np.array([True]))
+    played, *_ = run(get_up, player, [[posture]], right=True)
+    assert played[0, 0] == first
 
 
 def test_a_robot_on_its_back_rolls_stands_up_and_is_done_in_one_try():
@@ -86,6 +97,4 @@ def test_it_gives_up_after_its_tries(posture):
 def test_a_plan_without_tries_is_refused():
     sequence = Keyframes(angles=[[0.0]], seconds=[0.1])
     with pytest.raises(InvalidInputError, match="1 or more"):
-        GetUpPlan(
-            stand=sequence, off_left=sequence, off_right=sequence, off_back=sequence, tries=0
-        )
+        GetUpPlan(**dict.fromkeys(NAMES, sequence), tries=0)

@@ -122,7 +122,7 @@ def test_fallen_robots_get_up_by_themselves_after_their_patience():
     # the low pass takes some 0.1 s before it sees it
     assert 0.4 <= fell * FRAME <= 0.6
     assert (status[:, 1] == WALKING).all()
-    back = ERS7_GET_UP.off_back
+    back = ERS7_GET_UP.off_back_left
     np.testing.assert_allclose(targets[fell, 0], back.angles[0])
     # once it feels upright it stands up and walks
     whole = round((back.duration + ERS7_GET_UP.stand.duration) / FRAME)
@@ -149,7 +149,7 @@ def test_robots_that_are_not_automatic_wait_and_do_not_kick_while_fallen():
 
 def test_a_robot_that_never_comes_up_gives_up_until_told_again():
     motion, bound = engine()
-    frames = round(5 * ERS7_GET_UP.off_back.duration / FRAME) + 60
+    frames = round(5 * ERS7_GET_UP.off_back_left.duration / FRAME) + 60
     _, status = run(bound, motion.command(), BACK, frames)
     assert status[-1, 0] == GIVEN_UP
     assert bound.tries[0] == 5
@@ -206,6 +206,4 @@ def test_bad_kicks_are_refused():
     with pytest.raises(InvalidInputError, match="codes 1, 2 and 3"):
         AiboMotion(kicks={1: ERS7_KICKS[1]})
     with pytest.raises(InvalidInputError, match="place"):
-        Kick(
-            keyframes=ERS7_KICKS[1].keyframes, ball=(np.nan, 0.0), direction=0.0, distance=2.0
-        )
+        Kick(keyframes=ERS7_KICKS[1].keyframes, ball=(np.nan, 0.0), direction=0.0, distance=2.0)
