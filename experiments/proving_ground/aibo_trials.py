@@ -153,12 +153,12 @@ def kick(condition: Mapping[str, Any], seed: int) -> Metrics:
 def roll(condition: Mapping[str, Any], seed: int) -> Metrics:
     """A ball that rolls, from 1 m/s to rest; returns how far, ``distance_m``."""
     world = world_with(condition["friction"])
-    world.add_ball(-4.0, 0.0)
+    ball = world.add_ball(-4.0, 0.0)
     # a simulation needs somebody in it
     world.add_group(AiboERS7, [[-4.0, 4.0, 0.0]])
     simulation = _simulation(world, condition, seed)
     spin = simulation.model.joint(world.movers[0][0]).dofadr[0]
-    simulation.data.qvel[[spin, spin + 4]] = 1.0, 1.0 / world.movers[0][1].radius
+    simulation.data.qvel[[spin, spin + 4]] = 1.0, 1.0 / ball.radius
     seen: list[Array] = []
     simulation.observe(lambda: seen.append(simulation.truth.movers()[0, :2]))
     for t in simulation.ticks(_BALL_TIME):
