@@ -1,0 +1,57 @@
+"""Gaits of the Sony AIBO ERS-7."""
+
+import numpy as np
+
+from controllers.legged.gait import Trot
+from controllers.legged.gait_set import GaitSet
+
+# joints' angles in which it stands [rad]: the platform's home
+ERS7_HOME = tuple(
+    np.radians(
+        [-15, 7, 63, -15, 7, 63, -30, 8, 81, -30, 8, 81]  # legs: rotator, elevator, knee
+        + [-20, 0, 20, -5, 30, 0, 2, 2]  # tilt1, pan, tilt2, mouth, tail, ears
+    ).tolist()
+)
+_FORWARD = GaitSet(
+    period=0.502,
+    duty=(0.483, 0.431),
+    height=(0.102, 0.098),
+    lift=(0.010, 0.010),
+    ahead=(0.001, -0.033),
+    out=(0.013, 0.028),
+    clipped=True,
+)
+_BACKWARD = GaitSet(
+    period=0.536,
+    duty=(0.38, 0.477),
+    height=(0.0872, 0.0977),
+    lift=(0.012, 0.012),
+    ahead=(0.0404, -0.0033),
+    out=(0.0242, 0.0159),
+    gain=1.064,
+)
+_SIDEWAYS = GaitSet(
+    period=0.524,
+    duty=(0.451, 0.472),
+    height=(0.099, 0.097),
+    lift=(0.011, 0.010),
+    ahead=(0.037, -0.017),
+    out=(0.033, 0.027),
+)
+_TURNING = GaitSet(
+    period=0.411,
+    duty=(0.38, 0.38),
+    height=(0.0983, 0.0956),
+    lift=(0.012, 0.0122),
+    ahead=(0.019, 0.0),
+    out=(0.0226, 0.0275),
+    gain=1.151,
+)
+ERS7_TROT = Trot(
+    forward=_FORWARD,
+    backward=_BACKWARD,
+    sideways=_SIDEWAYS,
+    turning=_TURNING,
+    full=(0.42, 0.25, 0.185, 2.8),
+    home=ERS7_HOME[:12],
+)
