@@ -7,15 +7,11 @@ well they do. Tables are in degrees.
 
 import numpy as np
 
+from controllers.legged.ers7_gaits import ERS7_HOME
 from controllers.legged.get_up import GetUpPlan
 from controllers.legged.keyframes import Keyframes
 from controllers.legged.kicks import Kick
 
-# all 20 joints of a robot that stands, rad: the platform's home
-ERS7_HOME = np.radians(
-    [-15, 7, 63, -15, 7, 63, -30, 8, 81, -30, 8, 81]  # legs: rotator, elevator, knee
-    + [-20, 0, 20, -5, 30, 0, 2, 2]  # tilt1, pan, tilt2, mouth, tail, ears
-)
 # joints that mirrored robots exchange: left legs with right ones, ears; pan and tail_pan turn over
 _EXCHANGED = [3, 4, 5, 0, 1, 2, 9, 10, 11, 6, 7, 8, 12, 13, 14, 15, 16, 17, 19, 18]
 _TURNED = np.where(np.isin(np.arange(20), [13, 17]), -1.0, 1.0)

@@ -6,8 +6,10 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from controllers.legged.ers7_keyframes import ERS7_GET_UP, ERS7_HOME, ERS7_KICKS
+from controllers.legged.ers7_gaits import ERS7_HOME, ERS7_TROT
+from controllers.legged.ers7_keyframes import ERS7_GET_UP, ERS7_KICKS
 from controllers.legged.get_up import GetUp, GetUpPlan
+from controllers.legged.head import ERS7_HEAD, HeadGeometry
 from controllers.legged.keyframes import KeyframePlayer
 from controllers.legged.kicks import Kick
 from controllers.legged.posture import STANDING, Posture
@@ -20,8 +22,6 @@ WALKING, KICKING, GETTING_UP, FALLEN, GIVEN_UP = range(5)
 STATUSES = ("walking", "kicking", "getting up", "fallen", "given up")
 FRAME = 0.008  # s
 _LEGS, _HEAD = slice(0, 12), slice(12, 15)
-# the head's limits, deg (Tekkotsu, ERS7Info.h): tilt1, pan, tilt2
-_HEAD_LIMITS = np.radians([[-75.0, 0.0], [-88.0, 88.0], [-15.0, 45.0]])
 
 
 class BoundGait(Protocol):
@@ -57,29 +57,6 @@ class Gait(Protocol):
         ...
 
 
-class Standing:
-    """The gait of a robot that only stands."""
-
-    command_limits: Array = np.zeros((3, 2))
-
-    def bind(self, n: int) -> "Standing":
-        """Nothing to remember."""
-        return self
-
-    def legs(self, command: Array) -> Array:
-        """Home angles (n, 12)."""
-        return np.tile(ERS7_HOME[_LEGS], (len(command), 1))
-
-    def reset(self, mask: Mask) -> None:
-        """Nothing to do."""
-
-    def state(self) -> Any:
-        """Nothing."""
-
-    def set_state(self, state: Any) -> None:
-        """Nothing to put back."""
-
-
 class AiboMotion:
     """Legs that walk, a head that goes where it is told, and actions that take the whole body.
 
@@ -102,8 +79,9 @@ class AiboMotion:
 
     def __init__(
         self,
-        gait: Gait | None = None,
+        gait: Gait = ERS7_TROT,
         *,
+        head: HeadGeometry = ERS7_HEAD,
         automatic: bool = True,
         plan: GetUpPlan = ERS7_GET_UP,
         kicks: Mapping[int, Kick] = ERS7_KICKS,
@@ -112,7 +90,8 @@ class AiboMotion:
         """Put the parts together.
 
         Args:
-            gait: What walks; by default the robot only stands.
+            gait: What walks.
+            head: Whose limits the commands have.
             automatic: Whether robots get up without being told.
             plan: How.
             kicks: By their codes, ``KICK_FORWARD`` to ``KICK_RIGHT``.
@@ -126,10 +105,10 @@ class AiboMotion:
                 f"kicks have the codes {KICK_FORWARD}, {KICK_LEFT} and {KICK_RIGHT}; got "
                 f"{sorted(kicks)}"
             )
-        self.gait: Gait = Standing() if gait is None else gait
+        self.gait = gait
         self.automatic, self.plan, self.patience = automatic, plan, patience
         self.kicks = dict(kicks)
-        self.command_limits = np.vstack([self.gait.command_limits, _HEAD_LIMITS, [[WALK, GET_UP]]])
+        self.command_limits = np.vstack([gait.command_limits, head.limits, [[WALK, GET_UP]]])
 
     def bind(self, n: int) -> "BoundAiboMotion":
         """Begin afresh for n robots that stand at rest in their home pose."""
