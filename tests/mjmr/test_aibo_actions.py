@@ -1,17 +1,23 @@
 """The AIBO's actions in contact physics: its ball, getting up, kicks, and their telemetry."""
 
+from itertools import groupby
+
 import mujoco
 import numpy as np
 import pytest
 
+from controllers.legged.ers7_keyframes import ERS7_KICKS
 from controllers.legged.motion import (
     GET_UP,
     GETTING_UP,
     KICK_FORWARD,
+    KICK_LEFT,
     KICKING,
+    WALK,
     WALKING,
     AiboMotion,
 )
+from controllers.legged.posture import BACK
 from experiments.proving_ground import aibo_trials
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.robots.aibo_ers7 import AiboERS7
@@ -125,6 +131,40 @@ def test_the_status_is_telemetry_and_a_snapshot_has_the_engines_state():
     act(1.0, [0, KICK_FORWARD, GET_UP])
     np.testing.assert_array_equal(simulation.full_positions(), positions)
     np.testing.assert_array_equal(seen[-25:], told)
+
+
+def test_a_team_walks_kicks_and_gets_up_at_the_same_time():
+    world = aibo_trials.world_with(0.6)
+    ball = world.add_ball(*np.add(ERS7_KICKS[KICK_FORWARD].ball, [0.0, 3.0]))
+    motion = AiboMotion()
+    faller = world.add_group(AiboERS7(motion), [[0, 0, 0]], name="faller")
+    others = world.add_group(AiboERS7(motion), [[0, 3.0, 0], [0, -3.0, 0]], name="others")
+    for group in (faller, others):
+        group.mount(MotionStatus(rate=25.0))
+    simulation = Simulation(world, control_period=PERIOD, dt_max=0.004)
+    aibo_trials.fall(simulation, faller, BACK, np.random.default_rng(5))
+    seen, places = [], []
+    simulation.observe(
+        lambda: places.append(np.vstack([simulation.poses_of(g) for g in (faller, others)])[:, :2])
+    )
+    for t in simulation.ticks(8.0):
+        # all are told to walk all the time; one kicks first, the other on its way
+        codes = [KICK_FORWARD, KICK_LEFT if 2.0 < t < 2.5 else WALK]
+        faller.drive(motion.command([0.3, 0, 0]))
+        others.drive(motion.command([0.3, 0, 0], action=codes))
+        seen.append([*faller.motion_status.read(), *others.motion_status.read()])
+    fell, kicker, walker = (
+        [k for k, _ in groupby(np.array(seen)[1:, column].tolist())] for column in range(3)
+    )
+    assert fell == [WALKING, GETTING_UP, WALKING]
+    assert kicker == [KICKING, WALKING]
+    assert walker == [WALKING, KICKING, WALKING]
+    way = np.linalg.norm(places[-1] - places[-51], axis=1)
+    took = PERIOD * np.argmax(np.array(seen)[:, 0] == GETTING_UP)
+    assert 0.3 < took < 0.7
+    # the last 2 s all of them walk
+    np.testing.assert_allclose(way / 2.0, 0.29, atol=0.06)
+    assert simulation.mover_poses()[0, 0] - ball.x > 1.5
 
 
 def test_robots_without_an_engine_have_no_status():
