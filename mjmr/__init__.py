@@ -47,6 +47,7 @@ _WHERE = {
     "LineOfSight": "mjmr.sensors.line_of_sight",
     "Localizer": "mjmr.sensors.localizer",
     "MjmrError": "mjmr.errors",
+    "MotionStatus": "mjmr.sensors.motion_status",
     "Nims": "mjmr.robots.nims",
     "PanTilt": "mjmr.sensors.pan_tilt",
     "Pioneer2DX": "mjmr.robots.pioneer2dx",

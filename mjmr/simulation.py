@@ -138,6 +138,10 @@ class Simulation(TickedSimulation):
         drive: Any = self._drives[id(group)]
         return drive.wheel_angles(self.data)
 
+    def motion_status_of(self, group: "Group") -> Array | None:
+        """What a motion engine says each robot is doing (n,); None if nothing says it."""
+        return getattr(self._drives[id(group)], "motion_status", None)
+
     def mover_poses(self) -> Array:
         """Poses (k, 7) of the free props."""
         ids = self._mover_ids

@@ -231,17 +231,18 @@ def _prop(spec: mujoco.MjSpec, name: str, prop: "Box | Ball") -> None:
     if isinstance(prop, Ball):
         body = spec.worldbody.add_body(name=name, pos=[prop.x, prop.y, prop.radius])
         body.add_freejoint(name=name)
+        inertia = mujoco.mjtGeomInertia
         body.add_geom(
             name=name,
             type=mujoco.mjtGeom.mjGEOM_SPHERE,
             size=[prop.radius, 0, 0],
             mass=prop.mass,
+            typeinertia=inertia.mjINERTIA_SHELL if prop.shell else inertia.mjINERTIA_VOLUME,
             rgba=prop.rgba,
             # condim 6 lets it roll to a stop; the rolling coefficient is in metres
             condim=6,
-            friction=[0.5, 0.002, 0.0004],
-            # stiffer than the default and underdamped: it bounces, and sinks in less
-            solref=[0.0085, 0.4],
+            friction=prop.friction,
+            solref=prop.solref,
             priority=1,
             group=0,
         )

@@ -107,6 +107,12 @@ class JointServos:
         """Targets of the servos (n, k) [rad]."""
         return data.ctrl[self._servo]
 
+    @property
+    def motion_status(self) -> Array | None:
+        """What the engine says each robot is doing (n,), a copy; None if it does not say."""
+        status = getattr(self._motion, "status", None)
+        return None if status is None else np.array(status)
+
     def ramp(self, data: "mujoco.MjData", start: Array, target: Array, period: float) -> None:
         """Take the command of a period: the firmware gets ``target`` (n, c) by radio, at once."""
         self._command = target

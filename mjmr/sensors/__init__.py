@@ -12,6 +12,7 @@ from mjmr.sensors.imu import IMU
 from mjmr.sensors.lidar import Lidar
 from mjmr.sensors.line_of_sight import LineOfSight
 from mjmr.sensors.localizer import Localizer
+from mjmr.sensors.motion_status import MotionStatus
 from mjmr.sensors.pan_tilt import PanTilt
 from mjmr.sensors.rangers import InfraredRanger, Sonar
 
@@ -27,6 +28,7 @@ __all__ = [
     "Lidar",
     "LineOfSight",
     "Localizer",
+    "MotionStatus",
     "PanTilt",
     "Sensor",
     "Sonar",
