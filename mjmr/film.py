@@ -140,6 +140,24 @@ def overview_camera(
     return camera
 
 
+def corner_camera(
+    bounds: NDArray[np.float64], aspect: float, model: mujoco.MjModel
+) -> mujoco.MjvCamera:
+    """Camera that shows a whole world from above its lower left corner; see `overview_camera`."""
+    size = bounds[2:] - bounds[:2]
+    camera = mujoco.MjvCamera()
+    camera.azimuth, camera.elevation = 66.0, -40.0
+    turn, slant = math.radians(camera.azimuth), math.radians(-camera.elevation)
+    wide = (abs(math.sin(turn)) * size[0] + abs(math.cos(turn)) * size[1]) / 2
+    deep = (abs(math.cos(turn)) * size[0] + abs(math.sin(turn)) * size[1]) / 2
+    across = math.tan(math.radians(model.vis.global_.fovy / 2))
+    # the near edge is nearer than the middle, so larger
+    near = deep * math.cos(slant)
+    camera.distance = max(wide / aspect, deep * math.sin(slant) + 0.4) / across + 0.25 * near
+    camera.lookat[:2], camera.lookat[2] = (bounds[2:] + bounds[:2]) / 2, 0.3
+    return camera
+
+
 def _boxes_for_planes(model: mujoco.MjModel) -> None:
     """Draw finite planes as flat boxes: the same pixels seen from above, in 4/5 of the time."""
     thick = 0.01
@@ -169,7 +187,8 @@ class _Panel:
         self._colours = palette(len(footage.radii))
         self._renderer = Renderer(self._model, width, height, options.look)
         self._azimuth: float | None = None
-        self._overview = overview_camera(footage.bounds, width / height, self._model)
+        whole = corner_camera if options.camera == "corner" else overview_camera
+        self._whole = whole(footage.bounds, width / height, self._model)
 
     def picture(self, time: float) -> NDArray[np.uint8]:
         """Picture at ``time`` [s], RGB."""
@@ -196,8 +215,8 @@ class _Panel:
 
     def _camera(self, index: int) -> str | mujoco.MjvCamera:
         options, tracks = self._options, self._footage.poses
-        if options.camera == "overview":
-            return self._overview
+        if options.camera != "chase":
+            return self._whole
         robot = options.follow
         x, y, yaw = tracks[index, robot]
         # behind the direction of travel, which holonomic robots choose freely, turning slowly

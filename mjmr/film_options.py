@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from mjmr.errors import InvalidInputError, UnknownNameError
 
-CAMERAS = ("overview", "chase")
+CAMERAS = ("overview", "corner", "chase")
 LOOKS = ("draft", "fine")
 
 
@@ -13,7 +13,8 @@ class FilmOptions:
     """How a film looks.
 
     Attributes:
-        camera: ``"overview"``: the whole world from above; ``"chase"``: behind one robot.
+        camera: ``"overview"``: the whole world from above; ``"corner"``: the whole world from
+            above its lower left corner, slanting; ``"chase"``: behind one robot.
         follow: The robot that ``chase`` follows, index in the team.
         look: ``"draft"`` or ``"fine"`` (shadows, smooth edges; several times slower).
         width: [px], even.

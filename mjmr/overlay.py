@@ -13,6 +13,7 @@ Picture = NDArray[np.uint8]
 Rgb = tuple[int, int, int]
 _CIRCLE = np.stack([np.cos(np.linspace(0, 2 * np.pi, 33)), np.sin(np.linspace(0, 2 * np.pi, 33))])
 _FONT = cv2.FONT_HERSHEY_DUPLEX
+_FAR = 1e6  # px
 _SHIFT = 4  # cv2 takes sub-pixel coordinates as fixed point with this many bits
 
 
@@ -28,8 +29,9 @@ def palette(n: int) -> list[Rgb]:
 def draw_line(
     picture: Picture, pixels: Array, colour: Rgb, thickness: int = 1, dashed: bool = False
 ) -> None:
-    """Draw a polyline through pixels (k, 2); anything not finite is left out."""
-    pixels = pixels[np.isfinite(pixels).all(axis=-1)]
+    """Draw a polyline through pixels (k, 2); anything not finite or far outside is left out."""
+    with np.errstate(invalid="ignore"):
+        pixels = pixels[(np.abs(pixels) < _FAR).all(axis=-1)]
     if len(pixels) < 2:
         return
     pieces = _dashes(pixels) if dashed else pixels[None]

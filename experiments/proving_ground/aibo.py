@@ -4,10 +4,10 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
-from controllers.legged.gait import Trot
+
+from controllers.legged.ers7_gaits import ERS7_TROT
 from controllers.legged.heading import HeadingLoop
 from controllers.legged.motion import AiboMotion
-
 from experiments.proving_ground.aibo_trials import get_up, kick, roll
 from experiments.proving_ground.course import (
     LARGE,
@@ -50,7 +50,7 @@ def floor_friction(world: Any, friction: float) -> None:
 
 def engine() -> AiboMotion:
     """What walks and acts: the trot, the head at home, and every action."""
-    return AiboMotion(Trot())
+    return AiboMotion(ERS7_TROT)
 
 
 def _dog(condition: Mapping[str, Any], start: Any) -> tuple[Any, Any]:

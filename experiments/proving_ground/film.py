@@ -5,9 +5,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from controllers.legged.motion import KICK_FORWARD, WALK
-from mjmr.sensors.lidar import Lidar
 
+from controllers.legged.ers7_keyframes import ERS7_KICKS
+from controllers.legged.heading import HeadingLoop
+from controllers.legged.motion import KICK_FORWARD, WALK
 from controllers.motion.swing_free import swing_free
 from experiments.proving_ground.aibo import engine
 from mjmr.film import Film
@@ -20,6 +21,8 @@ from mjmr.robots.nims import Nims
 from mjmr.robots.pioneer2dx import Pioneer2DX
 from mjmr.robots.soccer_bot import SoccerBot
 from mjmr.robots.tamiya_txt1 import TamiyaTXT1
+from mjmr.sensors.lidar import Lidar
+from mjmr.sensors.localizer import Localizer
 from mjmr.simulation import Simulation
 from mjmr.study import Study
 from mjmr.world import World
@@ -28,26 +31,27 @@ PERIOD = 0.04
 _SECONDS = 24.0
 _NEAR, _SPEED = 0.8, 0.4  # m, m/s: the Pioneers'
 _ALONG = 4.0  # m, the carriage's way
-_DOG = (0.6, -1.9)
+_DOG, _BALL = (-0.9, -2.5), (0.6, -2.5)
 
 
 def build() -> tuple[World, dict[str, Group]]:
     """The hall and a group of each platform, by name."""
-    hall = World(bounds=[-5.5, -3.2, 5.5, 3.6], wall_height=0.35, floor="concrete")
-    for x, y in ((-4.6, 0.2), (-3.2, -1.6), (-2.3, 0.4), (-4.7, -2.4)):
+    hall = World(bounds=[-4.2, -3.4, 4.2, 3.4], wall_height=0.35, floor="concrete")
+    for x, y in ((-3.4, 0.6), (-2.0, -1.1), (-3.5, -2.8)):
         hall.add_box(x, y, 0.4, 0.4, height=0.5, yaw=x)
-    hall.add_ball(_DOG[0] + 1.6, _DOG[1])
+    hall.add_ball(*_BALL)
     groups = {
-        "pioneers": hall.add_group(Pioneer2DX, [[-3.6, -0.5, 0.3], [-2.2, -2.3, 2.0]]),
-        "koala": hall.add_group(Koala, [[-1.0, 0.9, 0.0]], team="blue"),
-        "truck": hall.add_group(TamiyaTXT1, [[2.6, -0.35, 0.0]], team="blue"),
+        "pioneers": hall.add_group(Pioneer2DX, [[-3.3, -0.9, 0.3], [-2.3, -2.4, 2.0]]),
+        "koala": hall.add_group(Koala, [[-1.2, 0.6, 0.0]], team="blue"),
+        "truck": hall.add_group(TamiyaTXT1, [[1.9, -0.6, 0.0]], team="blue"),
         "dog": hall.add_group(AiboERS7(engine()), [[*_DOG, 0.0]]),
         "bots": hall.add_group(
-            SoccerBot("omni"), [[4.6, -2.6, np.pi / 2], [4.6, -2.2, -np.pi / 2]], team="blue"
+            SoccerBot("omni"), [[3.5, -2.4, np.pi / 2], [2.9, -2.4, -np.pi / 2]], team="blue"
         ),
-        "nims": hall.add_group(Nims(along=-_ALONG / 2), [[0.0, 2.7, 0.0]]),
+        "nims": hall.add_group(Nims(along=-_ALONG / 2), [[0.0, 2.6, 0.0]]),
     }
     groups["pioneers"].mount(Lidar.lms200(rate=10.0))
+    groups["dog"].mount(Localizer(rate=25.0))
     return hall, groups
 
 
@@ -64,6 +68,8 @@ class _Directors:
         rig: Any = groups["nims"].platform
         self._travel = swing_free(_ALONG, 0.6, rig.swing_period(rig.line))
         self._motion = engine()
+        self._walk, self._kicked = HeadingLoop(), 0.0
+        self._reported: Any = groups["dog"].sensors["localizer"]
         self._scanner: Any = groups["pioneers"].sensors["lidar"]
 
     def drive(self, now: float) -> None:
@@ -73,9 +79,8 @@ class _Directors:
         leg = now % 4.0
         groups["koala"].drive([[0.4, 0.0] if leg < 2.5 else [0.0, np.pi / 2 / 1.5]])
         groups["truck"].drive([[0.42, 0.3]])
-        angle = 1.5 * now
-        circle = 0.5 * np.array([np.cos(angle), np.sin(angle)])
-        groups["bots"].drive([[*circle, 0.6], [*circle, -0.6]])
+        # round each other, facing outwards
+        groups["bots"].drive([[0.0, -0.45, 1.5], [0.0, -0.45, 1.5]])
         travel = self._travel.velocity(now + PERIOD) if now < 14.0 else 0.0
         winch = 0.2 if 14.0 < now < 16.0 else -0.2 if 18.0 < now < 20.0 else 0.0
         groups["nims"].drive([[travel, winch]])
@@ -91,15 +96,18 @@ class _Directors:
         return np.column_stack([np.where(near, 0.1, _SPEED), turn])
 
     def _dog(self, now: float) -> np.ndarray:
-        """To the ball, kick, then about."""
-        motion = self._motion
-        if now < 4.4:
-            return motion.command([[0.30, 0.0, 0.0]])
-        if now < 9.0:
-            return motion.command(action=KICK_FORWARD if now > 5.4 else WALK)
-        if now < 13.0:
-            return motion.command([[0.0, 0.0, 0.8]])
-        return motion.command([[0.25, 0.0, 0.3]])
+        """Up to the ball, kick, then about."""
+        motion, kick = self._motion, ERS7_KICKS[KICK_FORWARD]
+        pose = self._reported.read()[0]
+        gap = _BALL[0] - pose[0] - kick.ball[0]
+        if not self._kicked and gap > 0.004:
+            turn = float(self._walk.turn(pose[2], 2.0 * (_BALL[1] - pose[1])))
+            return motion.command([[min(0.3, 2.0 * gap + 0.03), 0.0, turn]])
+        self._kicked = self._kicked or now
+        since = now - self._kicked
+        if since < 3.5:
+            return motion.command(action=KICK_FORWARD if since > 0.4 else WALK)
+        return motion.command([[0.0, 0.0, 0.9] if since < 6.0 else [0.25, 0.0, 0.3]])
 
 
 def show() -> Recording:
@@ -117,6 +125,6 @@ def film(study: Study, path: Path, options: FilmOptions) -> None:
     """Write the film."""
     picture = Film("Proving ground: every platform at work", options)
     recording = show()
-    picture.add(recording, "from above")
+    picture.add(recording, "the hall", camera="corner")
     picture.add(recording, "behind the AIBO", camera="chase", follow=4)
     picture.write(path)

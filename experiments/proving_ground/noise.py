@@ -32,8 +32,8 @@ def noise(condition: Mapping[str, Any], seed: int) -> Metrics:
         pose = rng.uniform([-3, -3, -np.pi], [0.5, 3, np.pi])
     group = world.add_group(platform, [pose])
     for sensor in (Lidar(position=(0.0, 0.0, 0.3)), Compass(), IMU(), Bumper(), Localizer()):
-        if sensor.name not in group.sensors:
-            group.mount(sensor)
+        # the AIBO's model has something called imu, and soccer robots have a localizer
+        group.mount(sensor, f"{sensor.name}_here")
     simulation = Simulation(world, seed=seed, dt_max=condition["dt_ms"] / 1000.0)
     model, data = simulation.model, simulation.data
     count = round(SECONDS / simulation.timestep / HOLD)

@@ -42,6 +42,7 @@ class SiteSensor(Sensor):
 
         Raises:
             UnknownNameError: The model has no such site or body.
+            InvalidInputError: It has a site of the sensor's name.
         """
         import mujoco
 
@@ -54,6 +55,11 @@ class SiteSensor(Sensor):
                     raise UnknownNameError("site of the robot's model", self._site, valid)
             else:
                 name = f"{prefix}{key}"
+                if any(s.name == name for s in spec.sites):
+                    raise InvalidInputError(
+                        f"the robot's model has a site {key!r} of its own: mount the {self.name} "
+                        f"there (site={key!r}) or under another name"
+                    )
                 body = carrier_body(spec, prefix, self._body)
                 body.add_site(name=name, pos=self._position, group=3)
             for kind in self.kinds:
