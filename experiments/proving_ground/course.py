@@ -1,7 +1,7 @@
 """What all tests share: drive a course, keep what really happened, and the forms of claims."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +15,7 @@ from mjmr.world import World
 
 Array = NDArray[np.float64]
 Metrics = dict[str, float | int | bool]
-Test = Callable[[Mapping[str, Any], int], Metrics]
+Measure = Callable[[Table, Bound], Evidence]
 ALL = ("quick", "standard", "full")
 SHORT = {"pioneer2dx": "pioneer", "aibo_ers7": "aibo", "tamiya_txt1": "txt1"}
 LARGE = ("standard", "full")
@@ -100,35 +100,39 @@ def hall(half: float = 8.0, **options: Any) -> World:
 def worst(values: Sequence[float], bound: Bound, n: int) -> Evidence:
     """Of several values that must all satisfy a bound, the one that is nearest to not doing so."""
     found = min(values, key=bound.margin)
-    why = f"worst of {min(values):.4g} to {max(values):.4g}" if len(values) > 1 else ""
+    low, high = min(values), max(values)
+    why = f"worst of {low:.4g} to {high:.4g}" if low < high else ""
     return Evidence(float(found), n=n, why=why)
 
 
-def every(metric: str, bound: Bound) -> Callable[[Table], Evidence]:
-    """A metric that must satisfy ``bound`` in every trial: its worst value."""
-    return lambda table: worst([float(v) for v in table.values(metric)], bound, table.finished)
+def by_condition(table: Table, metric: str, of: Callable[[Array], Any] = np.mean) -> list[float]:
+    """What ``of`` makes of a metric's values under each condition.
+
+    Raises:
+        NoTrialsError: No trial has finished.
+    """
+    table.values(metric)
+    return [float(of(table.where(**c).values(metric))) for c in table.conditions]
 
 
-def means(metric: str, bound: Bound) -> Callable[[Table], Evidence]:
-    """A metric whose mean must satisfy ``bound`` under every condition: its worst mean."""
-
-    def evaluate(table: Table) -> Evidence:
-        found = [float(table.where(**c).values(metric).mean()) for c in table.conditions]
-        return worst(found, bound, table.finished)
-
-    return evaluate
+def every(metric: str) -> Measure:
+    """A metric that must satisfy the bound in every trial: its worst value."""
+    return lambda table, bound: worst(table.values(metric).tolist(), bound, table.finished)
 
 
-def apart(
-    metric: str, parameter: str, relative: bool = False, absolute: bool = False
-) -> Callable[[Table], Evidence]:
+def means(metric: str) -> Measure:
+    """A metric whose mean must satisfy the bound under every condition: its worst mean."""
+    return lambda table, bound: worst(by_condition(table, metric), bound, table.finished)
+
+
+def apart(metric: str, parameter: str, relative: bool = False, absolute: bool = False) -> Measure:
     """How far a metric's means at the values of a parameter are apart at most.
 
     Everything else alike; ``relative``: as a share of their mean; ``absolute``: of magnitudes, for
     commands whose mirror images are compared.
     """
 
-    def evaluate(table: Table) -> Evidence:
+    def evaluate(table: Table, bound: Bound) -> Evidence:
         alike: dict[Any, list[float]] = {}
         for condition in table.conditions:
             key = tuple((k, v) for k, v in condition.items() if k != parameter)
@@ -153,7 +157,7 @@ def sheet(
     text: str,
     how: str,
     bound: Bound,
-    evaluate: Callable[[Table], Evidence] | str,
+    measure: Measure | str,
     *,
     published: str = "no number",
     unit: str = "",
@@ -162,8 +166,9 @@ def sheet(
 ) -> Claim:
     """A line of a platform's sheet, as a claim on the trials of one test.
 
-    ``evaluate`` may be a metric's name: then :func:`every` trial must satisfy the bound.
+    ``measure`` may be a metric's name: then :func:`every` trial must satisfy the bound.
     """
+    measured = every(measure) if isinstance(measure, str) else measure
     return Claim(
         id=f"{SHORT.get(platform, platform)}-{name}",
         text=text,
@@ -173,5 +178,5 @@ def sheet(
         unit=unit,
         sizes=sizes,
         needs={"platform": platform, "test": test, **needs},
-        evaluate=every(evaluate, bound) if isinstance(evaluate, str) else evaluate,
+        evaluate=lambda table: measured(table, bound),
     )

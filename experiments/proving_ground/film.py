@@ -28,7 +28,7 @@ from mjmr.study import Study
 from mjmr.world import World
 
 PERIOD = 0.04
-_SECONDS = 24.0
+_SECONDS = 16.0
 _NEAR, _SPEED = 0.8, 0.4  # m, m/s: the Pioneers'
 _ALONG = 4.0  # m, the carriage's way
 _DOG, _BALL = (-0.9, -2.5), (0.6, -2.5)
@@ -81,8 +81,8 @@ class _Directors:
         groups["truck"].drive([[0.42, 0.3]])
         # round each other, facing outwards
         groups["bots"].drive([[0.0, -0.45, 1.5], [0.0, -0.45, 1.5]])
-        travel = self._travel.velocity(now + PERIOD) if now < 14.0 else 0.0
-        winch = 0.2 if 14.0 < now < 16.0 else -0.2 if 18.0 < now < 20.0 else 0.0
+        travel = self._travel.velocity(now + PERIOD) if now < 10.0 else 0.0
+        winch = 0.2 if 10.0 < now < 12.0 else -0.2 if 13.0 < now < 15.0 else 0.0
         groups["nims"].drive([[travel, winch]])
         groups["dog"].drive(self._dog(now))
 

@@ -158,7 +158,7 @@ def claims() -> list[Claim]:
               "to 2 rad/s, 2 and 5 ms", Bound.within(1.05, 1.25), "scrub", published="1.12"),
         sheet(NAME, "turn", "scrub-timestep", "the same at every timestep",
               "difference at 2 and 5 ms, largest over 0.3 to 2 rad/s", Bound("<=", 0.02),
-              apart("scrub", "dt_ms")),
+              apart("scrub", "dt_ms"), sizes=LARGE),
         sheet(NAME, "turn", "loads", "all six wheels carry in a turn",
               "share of steps with an unloaded wheel, up to 0.8 rad/s, 2 and 5 ms",
               Bound("<=", 0.0), "unloaded_share", turn=(0.3, 0.5, 0.8)),

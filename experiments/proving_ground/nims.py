@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from controllers.motion.swing_free import swing_free
-from experiments.proving_ground.course import Array, Metrics, apart, sheet
+from experiments.proving_ground.course import LARGE, Array, Metrics, apart, sheet
 from mjmr.claims import Bound, Claim
 from mjmr.robots.nims import Nims
 from mjmr.sensors.cable_tension import CableTension
@@ -115,10 +115,10 @@ def claims() -> list[Claim]:
               "off_curve_mm", unit="mm"),
         sheet(NAME, "move", "timestep-along", "the same at every timestep",
               "place half way at 2 and 10 ms, difference", Bound("<=", 2.0),
-              apart("middle_mm", "dt_ms"), unit="mm"),
+              apart("middle_mm", "dt_ms"), unit="mm", sizes=LARGE),
         sheet(NAME, "move", "timestep-lift", "the same at every timestep",
               "height half way at 2 and 10 ms, difference", Bound("<=", 2.0),
-              apart("middle_lift_mm", "dt_ms"), unit="mm"),
+              apart("middle_lift_mm", "dt_ms"), unit="mm", sizes=LARGE),
         sheet(NAME, "pendulum", "period", "the package swings as a pendulum",
               "period / that of a point on the line - 1, lab and field, both cables",
               Bound("<=", 2.0), "error_pct", unit="%"),

@@ -159,7 +159,7 @@ def claims() -> list[Claim]:
         found.append(
             sheet(NAME, test, f"{name}-timestep", "the same at every timestep",
                   f"{how}, difference of the errors at 2 and 5 ms", Bound("<=", 0.1),
-                  apart(metric, "dt_ms"), unit="%")
+                  apart(metric, "dt_ms"), unit="%", sizes=LARGE)
         )  # fmt: skip
     return [
         *found,

@@ -7,7 +7,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from experiments.proving_ground.course import Array, Metrics, hall, sheet
+from experiments.proving_ground.course import LARGE, Array, Metrics, hall, sheet
 from mjmr.claims import Bound, Claim
 from mjmr.geometry import rotation_matrix
 from mjmr.randomness import Streams
@@ -255,7 +255,7 @@ def claims() -> list[Claim]:
               "deviation_ratio"),
         sheet(NAME, "sonar", "sonar-cone", "a sonar hears what is in its cone",
               "where the edge of a screen is first heard - half the cone, both sides",
-              Bound("<=", 1.0), "edge_error_deg", unit="deg"),
+              Bound("<=", 1.0), "edge_error_deg", unit="deg", sizes=LARGE),
         sheet(NAME, "camera", "camera-projection", "a camera shows things where they project",
               "8 balls, projected centre to the centre OpenCV finds, largest", Bound("<=", 1.0),
               "pixel_error", unit="px"),

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from experiments.proving_ground.course import (
+    LARGE,
     Array,
     Course,
     Metrics,
@@ -108,5 +109,5 @@ def claims() -> list[Claim]:
               Bound("<=", 2.02), "top_speed", unit="m/s", published="2 m/s", variant="changing"),
         sheet(NAME, "roll-over", "roll-over", "stays upright at all its speeds",
               "slowest speed asked for at full lock at which it rolls over, in steps of 0.05 m/s, "
-              "2 and 5 ms", Bound(">", 2.0), "rolls_at", unit="m/s"),
+              "2 and 5 ms", Bound(">", 2.0), "rolls_at", unit="m/s", sizes=LARGE),
     ]  # fmt: skip
