@@ -136,3 +136,12 @@ def test_the_readme_counts_the_committed_verdicts():
         ]
         (row,) = [line for line in readme.splitlines() if line.startswith(f"| `{name}`")]
         assert ", ".join(counts) in row
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("script", "said"), [("lidars.py", "clear"), ("dogs.py", "True")])
+def test_the_scripts_on_robots_print_what_they_say(tmp_path, script, said):
+    write_files(ROOT / "docs" / "robots.md", tmp_path)
+    done = run([sys.executable, script], tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == [said]
