@@ -31,6 +31,10 @@ class UnknownNameError(InvalidInputError):
         super().__init__(f"unknown {kind} {str(name)!r}; valid: {', '.join(ordered) or 'none'}")
 
 
+class UnknownSensorError(UnknownNameError, AttributeError):
+    """A group has no sensor mounted under this name, nor any attribute called so."""
+
+
 class PartError(MjmrError):
     """What takes a role in a study cannot be loaded, or does not do what the role demands."""
 

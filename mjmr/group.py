@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mjmr.errors import InvalidInputError, UnknownNameError
+from mjmr.errors import InvalidInputError, UnknownNameError, UnknownSensorError
 from mjmr.faults import FaultSchedule
 from mjmr.robots.markings import TEAM_COLOURS
 
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
     from mjmr.robots.platform import Platform
     from mjmr.sensors.base import Sensor
-    from mjmr.sensors.localizer import Localizer
     from mjmr.world import World
 
 Array = NDArray[np.float64]
@@ -33,8 +32,6 @@ class Group:
         faults: What goes wrong, and when.
         clamped: Commands scaled down to the platform's limits so far, shape (n,).
     """
-
-    localizer: "Localizer"
 
     def __init__(
         self,
@@ -108,6 +105,15 @@ class Group:
             )
         start.setflags(write=False)
         self.start = start
+
+    def __getattr__(self, name: str) -> Any:
+        """Refuse what is neither mounted nor an attribute.
+
+        Raises:
+            UnknownSensorError: Lists the sensors that are mounted.
+        """
+        sensors = self.__dict__.get("sensors", {})
+        raise UnknownSensorError(f"sensor of {self.__dict__.get('name', 'a group')}", name, sensors)
 
     def mount(self, sensor: "Sensor", name: str | None = None) -> Any:
         """Mount a sensor on every robot and make it ``group.<name>``.

@@ -1,5 +1,7 @@
 """Drives with a frame rate of their own, and starts that cannot be."""
 
+import copy
+
 import numpy as np
 import pytest
 
@@ -90,6 +92,15 @@ def test_robots_outside_are_named_with_depth():
     world = World(bounds=[-2, -2, 2, 2])
     with pytest.raises(InvalidInputError, match="soccer_bot1 by 590 mm"):
         world.add_group(SoccerBot, [[0.0, 0.0, 0.0], [2.5, 0.0, 0.0]])
+
+
+def test_an_unknown_sensor_lists_the_mounted_ones():
+    world = World(bounds=[-2, -2, 2, 2])
+    robots = world.add_group(Pioneer2DX, [[0.0, 0.0, 0.0]])
+    with pytest.raises(InvalidInputError, match="unknown sensor of pioneer2dx 'lidar'; valid: enc"):
+        robots.lidar.read()
+    assert not hasattr(robots, "lidar")
+    assert copy.copy(robots).names == robots.names
 
 
 def test_a_name_is_mounted_once():
