@@ -14,6 +14,8 @@ Array = NDArray[np.float64]
 SETS = ("forward", "backward", "sideways", "turning")
 _STAND = 4  # column of the weights, after those of SETS
 _SAMPLES = 256  # of a period when a table is checked
+# of the shares of a command: with 2 some mixtures of full commands are out of reach
+_NORM = 1.5
 
 
 class Rates(NamedTuple):
@@ -32,8 +34,8 @@ class Rates(NamedTuple):
 class Trot:
     """A trot with a gait for each direction, mixed by their shares of a command.
 
-    A command's share in a direction is its part of the full speed there. Shares are scaled down
-    where the root of their squares' sum is above one. Gaits are mixed in proportion to the shares;
+    A command's share in a direction is its part of the full speed there. Where the sum of their
+    powers of 1.5 is above one, commands are scaled down. Gaits are mixed in proportion to the shares;
     which gait is under way and how long strokes are change by at most their full range in
     ``ramp``, so starts, stops and turns are smooth. A robot commanded nothing stands in ``home``.
 
@@ -174,7 +176,7 @@ class BoundTrot:
             )
         trot = self._trot
         shares = trot.shares(command)
-        size = np.sqrt((shares**2).sum(axis=1))
+        size = (shares**_NORM).sum(axis=1) ** (1.0 / _NORM)
         over = size > 1.0 + 1e-9
         self.clamped += over
         scale = np.where(over, 1.0 / np.maximum(size, 1.0), 1.0)
