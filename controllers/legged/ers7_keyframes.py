@@ -1,7 +1,7 @@
 """Keyframes of the Sony AIBO ERS-7: getting up and kicks.
 
-Those for getting up are the starting values of a reference run, longer at their ends; the kicks
-are made from it by evolution, for the model in assets/aibo_ers7, whose README says how, and how
+Standing up and rolling off the back are those of a reference run; rolling off a side and the kicks
+are made from it by evolution for the model in assets/aibo_ers7, whose README says how, and how
 well they do. Tables are in degrees.
 """
 
@@ -47,9 +47,9 @@ ERS7_STAND_UP = _sequence(
 )
 # from the left side to the belly: the lower legs push behind the back
 ERS7_OFF_LEFT = _sequence(
-    (0.35, ((130, -10, 69), (-25, -10, 21), (115, -10, 69), (-25, -10, 21)), (-17, -43, 20)),
-    (0.31, ((97, 19, 69), (-59, 0, -25), (97, 19, 69), (-59, 0, -25)), (-17, -67, 20)),
-    (0.36, ((-19, 36, 15), (-5, 78, 44), (-19, 36, 15), (-5, 78, 44)), (-17, -5, 20)),
+    (0.45, ((98, -10, 40), (9, -7, -21), (111, 3, 116), (-19, -10, -23)), (-10, -45, 20)),
+    (0.17, ((108, -10, 92), (-50, 22, 36), (112, -10, 70), (-34, 7, -13)), (-54, -69, 20)),
+    (0.30, ((-13, 29, -17), (32, 88, 41), (-6, 24, 52), (-9, 75, 50)), (-6, 28, 20)),
     stepped=True,
 )
 # from the back to the belly, over the right side

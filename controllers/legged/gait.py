@@ -34,10 +34,11 @@ class Rates(NamedTuple):
 class Trot:
     """A trot with a gait for each direction, mixed by their shares of a command.
 
-    A command's share in a direction is its part of the full speed there. Where the sum of their
-    powers of 1.5 is above one, commands are scaled down. Gaits are mixed in proportion to the shares;
-    which gait is under way and how long strokes are change by at most their full range in
-    ``ramp``, so starts, stops and turns are smooth. A robot commanded nothing stands in ``home``.
+    A command's share in a direction is its part of the full speed there. Where the sum of the
+    shares to the power of 1.5 is above one, the command is scaled down. Gaits are mixed in
+    proportion to the shares; which gait is under way and how long strokes are change by at most
+    their full range in ``ramp``, so starts, stops and turns are smooth. A robot commanded nothing
+    stands in ``home``.
 
     Attributes:
         forward: Gait forwards.
@@ -67,7 +68,7 @@ class Trot:
     leg: LegGeometry = ERS7
     rates: tuple[float, float, float] = (4.865, 5.280, 5.280)
     frame: float = 0.008
-    ramp: float = 0.4
+    ramp: float = 0.5
     dead: float = 0.01
 
     def __post_init__(self):

@@ -153,6 +153,24 @@ def test_three_metres_straight_on_by_the_localizer(friction):
         assert abs(error[end - 12 : end + 1, k].mean()) < np.radians(5)
 
 
+def test_it_stays_on_its_feet_when_commands_and_the_head_jump():
+    # gaits were found that are fast and fall over their forefeet here
+    world, robots = hall([[4 * (k % 4) - 6, 4 * (k // 4) - 6, k] for k in range(16)], 1.0)
+    simulation = Simulation(world, control_period=0.04, dt_max=0.004)
+    bases = [simulation.model.body(f"{name}/base").id for name in robots.names]
+    upright = []
+    simulation.observe(lambda: upright.append(simulation.data.xmat[bases, 8]))
+    rng = np.random.default_rng(3)
+    command = np.zeros((robots.n, 6))
+    for k, _ in enumerate(simulation.ticks(8.0)):
+        if k % 30 == 0:
+            command = rng.uniform(*Walk().command_limits.T, command.shape)
+            command[:, 0] = [-0.2, 0.42][k // 30 % 2] * rng.uniform(0.5, 1.0, robots.n)
+            command[:, 1:3] *= rng.random((robots.n, 2)) < 0.3
+        robots.drive(command)
+    assert np.min(upright) > np.cos(np.radians(20))
+
+
 def test_it_stops_at_home_and_a_snapshot_in_mid_walk_goes_back_bit_for_bit():
     world, robots = hall([[0, 0, 0.5]])
     simulation = Simulation(world, control_period=0.04, dt_max=0.004)
