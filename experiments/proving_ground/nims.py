@@ -47,7 +47,9 @@ def move(condition: Mapping[str, Any], seed: int) -> Metrics:
     for k, _ in enumerate(simulation.ticks(ticks * PERIOD + 30.0)):
         group.drive([[plan.velocity((k + 1) * PERIOD), 0.0]])
     along, lift, swing = np.array(seen)[:, [_ALONG, _LIFT, _SWING]].T
-    arrived = round(ticks * PERIOD / simulation.timestep)
+    # rows are of the ends of steps
+    arrived = round(ticks * PERIOD / simulation.timestep) - 1
+    half = round(ticks * PERIOD / simulation.timestep / 2) - 1
     curve = platform.cable.sag * (along / (platform.cable.span / 2)) ** 2
     per_swing = round(2 * period / simulation.timestep)
     return {
@@ -57,8 +59,8 @@ def move(condition: Mapping[str, Any], seed: int) -> Metrics:
         "residual_deg": float(np.degrees(np.abs(swing[arrived : arrived + per_swing]).max())),
         "peak_deg": float(np.degrees(np.abs(swing).max())),
         # where it was on the way, for comparing timesteps
-        "middle_mm": 1000 * float(along[arrived // 2]),
-        "middle_lift_mm": 1000 * float(lift[arrived // 2]),
+        "middle_mm": 1000 * float(along[half]),
+        "middle_lift_mm": 1000 * float(lift[half]),
     }
 
 

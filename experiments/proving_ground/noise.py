@@ -1,6 +1,6 @@
 """Every actuator driven by noise from a random start: nothing may warn, whatever is mounted."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import mujoco
@@ -11,11 +11,17 @@ from experiments.proving_ground.course import ALL, Metrics, hall, sheet
 from mjmr.claims import Bound, Claim
 from mjmr.randomness import Streams
 from mjmr.robots import platform_class
+from mjmr.sensors.base import Sensor
 from mjmr.sensors.bumper import Bumper
+from mjmr.sensors.cable_tension import CableTension
 from mjmr.sensors.compass import Compass
+from mjmr.sensors.force_torque import ForceTorque
 from mjmr.sensors.imu import IMU
 from mjmr.sensors.lidar import Lidar
+from mjmr.sensors.line_of_sight import LineOfSight
 from mjmr.sensors.localizer import Localizer
+from mjmr.sensors.pan_tilt import PanTilt
+from mjmr.sensors.rangers import InfraredRanger, Sonar
 from mjmr.simulation import Simulation
 
 SECONDS, HOLD = 1.0, 20  # s, steps a value is held
@@ -31,7 +37,7 @@ def noise(condition: Mapping[str, Any], seed: int) -> Metrics:
     if not platform.anchored:
         pose = rng.uniform([-3, -3, -np.pi], [0.5, 3, np.pi])
     group = world.add_group(platform, [pose])
-    for sensor in (Lidar(position=(0.0, 0.0, 0.3)), Compass(), IMU(), Bumper(), Localizer()):
+    for sensor in (*_everywhere(), *_OF[condition["platform"]]()):
         # the AIBO's model has something called imu, and soccer robots have a localizer
         group.mount(sensor, f"{sensor.name}_here")
     simulation = Simulation(world, seed=seed, dt_max=condition["dt_ms"] / 1000.0)
@@ -52,6 +58,21 @@ def noise(condition: Mapping[str, Any], seed: int) -> Metrics:
         "finite": bool(np.isfinite(data.qpos).all() and np.isfinite(data.qvel).all()),
         "fastest": fastest,
     }
+
+
+def _everywhere() -> list[Sensor]:
+    lidar = Lidar(position=(0.0, 0.0, 0.3))
+    return [lidar, Compass(), IMU(), Bumper(), Localizer(), LineOfSight()]
+
+
+_OF: dict[str, Callable[[], list[Sensor]]] = {
+    "pioneer2dx": lambda: [Sonar(), PanTilt()],
+    "koala": lambda: [InfraredRanger(), PanTilt()],
+    "aibo_ers7": lambda: [InfraredRanger(sites=("ir_head", "ir_chest")), ForceTorque(body="head")],
+    "tamiya_txt1": lambda: [Sonar(), PanTilt()],
+    "nims": lambda: [CableTension(), ForceTorque(site="package")],
+    "soccer_bot": list,
+}
 
 
 def _ranges(model: Any) -> tuple[np.ndarray, np.ndarray]:

@@ -117,7 +117,7 @@ def camera(condition: Mapping[str, Any], seed: int) -> Metrics:
     rng = Streams(seed).generator("balls")
     world = hall(4.0)
     robots = world.add_group(Pioneer2DX, [[-3.0, 0.0, 0.0]])
-    places = np.column_stack([rng.uniform(-1.5, 2.0, 8), np.linspace(-1.5, 1.5, 8)])
+    places = np.column_stack([rng.uniform(0.5, 3.0, 8), np.linspace(-1.5, 1.5, 8)])
     for x, y in places:
         world.add_golf_ball(x, y)
     kind = {"position": (0.0, 0.0, 0.35), "look_at": (3.0, 0.0, 0.0), "fovy": 0.9}
@@ -136,7 +136,7 @@ def camera(condition: Mapping[str, Any], seed: int) -> Metrics:
         pinhole = eye.calibration
         told = pinhole.project(inside)
         found = _orange(image)
-        error = [float(np.hypot(*(found - t).T).min()) for t in told]
+        error = [float(np.hypot(*(found - t).T).min()) for t in told] if len(found) else [np.inf]
         ray_error = _depth_error(simulation, deep.calibration, depth, frame, body.xpos)
     return {"pixel_error": max(error), "found": len(found), "depth_error_m": ray_error}
 
