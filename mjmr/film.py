@@ -144,17 +144,20 @@ def corner_camera(
     bounds: NDArray[np.float64], aspect: float, model: mujoco.MjModel
 ) -> mujoco.MjvCamera:
     """Camera that shows a whole world from above its lower left corner; see `overview_camera`."""
-    size = bounds[2:] - bounds[:2]
     camera = mujoco.MjvCamera()
-    camera.azimuth, camera.elevation = 66.0, -40.0
+    camera.azimuth, camera.elevation = 68.0, -47.0
     turn, slant = math.radians(camera.azimuth), math.radians(-camera.elevation)
-    wide = (abs(math.sin(turn)) * size[0] + abs(math.cos(turn)) * size[1]) / 2
-    deep = (abs(math.cos(turn)) * size[0] + abs(math.sin(turn)) * size[1]) / 2
+    right = np.array([math.sin(turn), -math.cos(turn), 0.0])
+    ahead = np.array([math.cos(turn) * math.cos(slant), math.sin(turn) * math.cos(slant),
+                      -math.sin(slant)])  # fmt: skip
+    middle = np.array([*(bounds[:2] + bounds[2:]) / 2, 0.3])
+    x, y, z = np.meshgrid(bounds[[0, 2]], bounds[[1, 3]], [0.0, 1.0])
+    corners = np.column_stack([x.ravel(), y.ravel(), z.ravel()]) - middle
     across = math.tan(math.radians(model.vis.global_.fovy / 2))
-    # the near edge is nearer than the middle, so larger
-    near = deep * math.cos(slant)
-    camera.distance = max(wide / aspect, deep * math.sin(slant) + 0.4) / across + 0.25 * near
-    camera.lookat[:2], camera.lookat[2] = (bounds[2:] + bounds[:2]) / 2, 0.3
+    wide = np.abs(corners @ right) / (across * aspect)
+    high = np.abs(corners @ np.cross(right, ahead)) / across
+    camera.distance = 1.04 * float((np.maximum(wide, high) - corners @ ahead).max())
+    camera.lookat[:] = middle
     return camera
 
 

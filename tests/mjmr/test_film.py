@@ -8,7 +8,7 @@ import pytest
 
 from mjmr.bench import films
 from mjmr.errors import InvalidInputError, UnknownNameError
-from mjmr.film import Film, overview_camera
+from mjmr.film import Film, corner_camera, overview_camera
 from mjmr.film_options import FilmOptions
 from mjmr.geometry import Pinhole
 from mjmr.kinematics import KinematicSimulation
@@ -73,13 +73,14 @@ def test_projection_puts_overlays_where_things_are_drawn():
         assert abs(rows.mean() + top + 0.5 - v) < 1.0
 
 
-def test_everything_of_the_world_is_inside_the_overview():
+@pytest.mark.parametrize("whole", [overview_camera, corner_camera])
+def test_everything_of_the_world_is_in_the_picture(whole):
     world, _ = soccer([[0.0, 0.0, 0.0]])
     model = world.spec().compile()
     for width, height in ((640, 676), (1280, 676), (300, 900)):
         with Renderer(model, width, height) as renderer:
             simulation = Simulation(world)
-            renderer.picture(simulation.data, overview_camera(world.bounds, width / height, model))
+            renderer.picture(simulation.data, whole(world.bounds, width / height, model))
             view = renderer.view()
         x0, y0, x1, y1 = world.bounds
         corners = view.on_floor(np.array([[x0, y0], [x0, y1], [x1, y0], [x1, y1]]))
