@@ -19,6 +19,7 @@ from mjmr.robots.tamiya_txt1 import TamiyaTXT1
 from mjmr.sensors.camera import Camera
 from mjmr.simulation import Simulation
 from mjmr.world import World
+from tests.mjmr.bases import drive
 from tests.mjmr.worlds import BOTH
 
 PERIOD = 0.1
@@ -37,27 +38,6 @@ def trucks(poses, platform=TamiyaTXT1, **options):
     """A large hall; returns (world, robots)."""
     world = World(bounds=[-15, -15, 15, 15], wall_height=0.5)
     return world, world.add_group(platform, poses, **options)
-
-
-def drive(simulation, robots, commands):
-    """Give one command (2,) a tick; true poses (k + 1, n, 3), twists and largest tilt [deg]."""
-    poses, twists, tilts = [], [], [0.0]
-    truth = simulation.truth
-
-    def see():
-        poses.append(truth.poses(robots))
-        twists.append(truth.twists(robots))
-
-    simulation.observe(see)
-    if isinstance(simulation, Simulation):
-        bases = [simulation.model.body(f"{name}/base").id for name in robots.names]
-        simulation.watch_steps(
-            lambda: tilts.append(np.arccos(simulation.data.xmat[bases, 8].clip(-1, 1)).max())
-        )
-    ticks = simulation.ticks(len(commands) * simulation.control_period)
-    for command, _ in zip(commands, ticks, strict=True):
-        robots.drive(np.broadcast_to(command, (robots.n, 2)))
-    return np.array(poses), np.array(twists), np.degrees(np.max(tilts))
 
 
 def run(commands, platform, dt_max=0.005, pose=(0.0, 0.0, 0.0), world_of=trucks):
