@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mjmr.claims import Bound, Claim, Evidence, Table
+from mjmr.errors import MjmrError
 from mjmr.group import Group
 from mjmr.simulation import Simulation
 from mjmr.world import World
@@ -19,6 +20,10 @@ Measure = Callable[[Table, Bound], Evidence]
 ALL = ("quick", "standard", "full")
 SHORT = {"pioneer2dx": "pioneer", "aibo_ers7": "aibo", "tamiya_txt1": "txt1"}
 LARGE = ("standard", "full")
+
+
+class NothingMeasuredError(MjmrError):
+    """So little happened in a trial that its errors would look good for that alone."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +41,11 @@ class Log:
     poses: Array
     twists: Array
     tilt: float
+
+    @property
+    def ways(self) -> Array:
+        """Lengths of the robots' paths (n,) [m]."""
+        return np.hypot(*np.diff(self.poses[:, :, :2], axis=0).transpose(2, 0, 1)).sum(axis=0)
 
     @property
     def yaw(self) -> Array:
@@ -90,6 +100,23 @@ def profile(command: Sequence[float], periods: int, ramp: int = 5, rest: int = 6
     share = np.arange(1, ramp + 1) / ramp
     whole = np.concatenate([share, np.ones(periods - ramp), share[::-1][1:], np.zeros(rest)])
     return whole[:, None] * np.asarray(command)
+
+
+def demand(what: str, found: float, least: float) -> None:
+    """Refuse a trial in which not enough happened: a robot at rest is off no line.
+
+    Args:
+        what: Was counted, with its unit.
+        found: How much of it there was.
+        least: How much is needed.
+
+    Raises:
+        NothingMeasuredError: Less, or not a number; the trial fails, and with it its claims.
+    """
+    if not found >= least:
+        raise NothingMeasuredError(
+            f"nothing was measured: {what} came to {found:.3g}; at least {least:.3g} are needed"
+        )
 
 
 def hall(half: float = 8.0, **options: Any) -> World:

@@ -7,10 +7,12 @@ import mujoco
 import numpy as np
 from scipy.stats import qmc
 
-from experiments.proving_ground.course import ALL, Metrics, hall, sheet
+from experiments.proving_ground.course import ALL, Metrics, demand, hall, sheet
 from mjmr.claims import Bound, Claim
 from mjmr.randomness import Streams
 from mjmr.robots import platform_class
+from mjmr.robots.nims import CABLES, Nims
+from mjmr.robots.platform import Platform
 from mjmr.sensors.base import Sensor
 from mjmr.sensors.bumper import Bumper
 from mjmr.sensors.cable_tension import CableTension
@@ -30,7 +32,7 @@ SECONDS, HOLD = 1.0, 20  # s, steps a value is held
 def noise(condition: Mapping[str, Any], seed: int) -> Metrics:
     """One second of Halton noise on all actuators, from a random pose beside a wall and a box."""
     rng = Streams(seed).generator("start")
-    platform = platform_class(condition["platform"])()
+    platform = _robot(condition["platform"], rng)
     world = hall(4.0)
     world.add_box(1.5, 0.0, 0.4, 0.4, height=0.4)
     pose = np.zeros(3)
@@ -53,11 +55,20 @@ def noise(condition: Mapping[str, Any], seed: int) -> Metrics:
     for sensor in group.sensors.values():
         sensor.capture(simulation.step, simulation.time)
         sensor.read()
+    demand("fastest speed", fastest, 0.1)
     return {
         "warnings": int(data.warning.number.sum()),
         "finite": bool(np.isfinite(data.qpos).all() and np.isfinite(data.qvel).all()),
         "fastest": fastest,
     }
+
+
+def _robot(name: str, rng: np.random.Generator) -> Platform:
+    """A platform; NIMS, whose rig stands still, has either cable and starts anywhere on it."""
+    if name != Nims.name:
+        return platform_class(name)()
+    reach = Nims().reach
+    return Nims(cable=CABLES[rng.integers(2)], along=rng.uniform(-reach, reach))
 
 
 def _everywhere() -> list[Sensor]:
@@ -82,7 +93,8 @@ def _ranges(model: Any) -> tuple[np.ndarray, np.ndarray]:
     saturates the motor.
     """
     limited = model.actuator_ctrllimited.astype(bool)
-    gain, most = model.actuator_gainprm[:, 0], model.actuator_forcerange[:, 1]
+    # a winch pulls only: its limit is the lower one
+    gain, most = model.actuator_gainprm[:, 0], np.abs(model.actuator_forcerange).max(axis=1)
     ramp = np.where(most > 0, most / np.where(gain > 0, gain, 1.0) / 0.05, 10.0)
     low = np.where(limited, model.actuator_ctrlrange[:, 0], -ramp)
     high = np.where(limited, model.actuator_ctrlrange[:, 1], ramp)
