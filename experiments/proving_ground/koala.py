@@ -13,6 +13,7 @@ from experiments.proving_ground.course import (
     Course,
     Metrics,
     apart,
+    demand,
     hall,
     profile,
     sheet,
@@ -79,6 +80,7 @@ def turn(condition: Mapping[str, Any], seed: int) -> Metrics:
     periods = round(3 * 2 * np.pi / rate / PERIOD)
     told = _follow(course, profile([0.0, rate], periods), Koala.track)
     yaw = course.log.yaw[:, 0]
+    demand("turn [rad]", abs(yaw[-1] - yaw[0]), 3 * np.pi)
     return {
         "scrub": float((told[-1, 2] - told[0, 2]) / (yaw[-1] - yaw[0])),
         "unloaded_share": loads.unloaded_share,
@@ -89,6 +91,7 @@ def straight(condition: Mapping[str, Any], seed: int) -> Metrics:
     """5 m ahead at 0.3 m/s on wheels whose grip differs."""
     course = _course(condition, uneven=seed, start=(-2.5, 0.0, 0.0))
     log = course.drive(profile([0.3, 0.0], round(5.0 / 0.3 / PERIOD))).log
+    demand("way [m]", log.ways[0], 4.5)
     return {
         "lateral_mm": 1000 * abs(float(log.poses[-1, 0, 1])),
         "way_m": float(log.poses[-1, 0, 0] + 2.5),
@@ -102,6 +105,7 @@ def odometry(condition: Mapping[str, Any], seed: int) -> Metrics:
     periods = round(5 * 2 * np.pi / rate / PERIOD)
     told = _follow(course, profile([0.0, rate], periods), Koala.effective_track)
     yaw = course.log.yaw[:, 0]
+    demand("turn [rad]", abs(yaw[-1] - yaw[0]), 5 * np.pi)
     error = (told[-1, 2] - told[0, 2]) - (yaw[-1] - yaw[0])
     return {"error_deg": abs(float(np.degrees(error)))}
 
@@ -115,6 +119,7 @@ def square(condition: Mapping[str, Any], seed: int) -> Metrics:
     commands = np.concatenate([side, corner] * 4)
     course = _course(condition, start=(-1.0, -sign, 0.0))
     told = _follow(course, commands, Koala.effective_track)
+    demand("way [m]", course.log.ways[0], 6.0)
     true = course.log.poses[-1, 0]
     return {
         "error_mm": 1000 * float(np.hypot(*(told[-1, :2] - true[:2]))),

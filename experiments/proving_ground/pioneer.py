@@ -11,6 +11,7 @@ from experiments.proving_ground.course import (
     Course,
     Metrics,
     apart,
+    demand,
     hall,
     profile,
     sheet,
@@ -38,7 +39,8 @@ def straight(condition: Mapping[str, Any], seed: int) -> Metrics:
     """5 m ahead at 0.5 m/s."""
     log = _course(condition).drive(profile([0.5, 0.0], 100)).log
     way = log.poses[-1, 0] - log.poses[0, 0]
-    return {"error_pct": 100 * abs(way[0] - 5.0) / 5.0, "lateral_mm": 1000 * abs(way[1])}
+    over = 100 * (way[0] / 5.0 - 1.0)
+    return {"error_pct": abs(over), "over_pct": over, "lateral_mm": 1000 * abs(way[1])}
 
 
 def turn(condition: Mapping[str, Any], seed: int) -> Metrics:
@@ -47,7 +49,8 @@ def turn(condition: Mapping[str, Any], seed: int) -> Metrics:
     log = _course(condition).drive(profile([0.0, rate], 63)).log
     turned = log.yaw[-1, 0] - log.yaw[0, 0]
     moved = np.linalg.norm(log.poses[-1, 0, :2] - log.poses[0, 0, :2])
-    return {"error_pct": 100 * abs(turned / (2 * np.pi) - 1.0), "moved_mm": 1000 * float(moved)}
+    over = 100 * (turned / (2 * np.pi) - 1.0)
+    return {"error_pct": abs(over), "over_pct": over, "moved_mm": 1000 * float(moved)}
 
 
 def circle(condition: Mapping[str, Any], seed: int) -> Metrics:
@@ -59,8 +62,10 @@ def circle(condition: Mapping[str, Any], seed: int) -> Metrics:
     length = speed * periods * PERIOD
     off = np.linalg.norm(log.poses[-1, 0, :2] - ideal[-1, :2])
     turned = log.yaw[-1, 0] - log.yaw[0, 0]
+    over = 100 * (turned / (speed * periods * PERIOD) - 1.0)
     return {
-        "heading_error_pct": 100 * abs(turned / (speed * periods * PERIOD) - 1.0),
+        "heading_error_pct": abs(over),
+        "heading_over_pct": over,
         "end_error_pct": 100 * float(off) / length,
     }
 
@@ -96,6 +101,8 @@ def crowd(condition: Mapping[str, Any], seed: int) -> Metrics:
     sign = np.where(reverse & (np.arange(len(arcs)) // 50 % 2 == 1), -1.0, 1.0)
     speed = np.broadcast_to(0.4 * sign[:, None], arcs.shape)
     log = course.drive(np.stack([speed, arcs], axis=2)).log
+    # blind, they soon push on boxes, walls and each other: of 24 m some 2.4 are left, forwards
+    demand("mean way [m]", log.ways.mean(), 1.0)
     return {"tilt_deg": float(np.degrees(log.tilt)), "tipped": bool(log.tilt > _TIPPED)}
 
 
@@ -146,12 +153,15 @@ def claims() -> list[Claim]:
     """What the Pioneer must do."""
     exact = "against the commanded unicycle, 2 and 5 ms, largest"
     found = []
-    for test, name, metric, how in (
-        ("straight", "straight", "error_pct", "5 m at 0.5 m/s"),
-        ("turn", "turn", "error_pct", "360 degrees on the spot at 1 rad/s"),
-        ("circle", "circle-heading", "heading_error_pct", "1 m circle at 0.4 m/s, heading"),
-        ("circle", "circle-end", "end_error_pct", "1 m circle at 0.4 m/s, end / way"),
-    ):
+    # timesteps are compared by signed errors: +0.3 and -0.3 % are not the same
+    for test, name, metric, signed, how in (
+        ("straight", "straight", "error_pct", "over_pct", "5 m at 0.5 m/s"),
+        ("turn", "turn", "error_pct", "over_pct", "360 degrees on the spot at 1 rad/s"),
+        ("circle", "circle-heading", "heading_error_pct", "heading_over_pct",
+         "1 m circle at 0.4 m/s, heading"),
+        ("circle", "circle-end", "end_error_pct", "end_error_pct",
+         "1 m circle at 0.4 m/s, end / way"),
+    ):  # fmt: skip
         found.append(
             sheet(NAME, test, name, "the base does what it is told", f"{how}, {exact}",
                   Bound("<=", 0.3), metric, unit="%")
@@ -159,7 +169,7 @@ def claims() -> list[Claim]:
         found.append(
             sheet(NAME, test, f"{name}-timestep", "the same at every timestep",
                   f"{how}, difference of the errors at 2 and 5 ms", Bound("<=", 0.1),
-                  apart(metric, "dt_ms"), unit="%", sizes=LARGE)
+                  apart(signed, "dt_ms"), unit="%", sizes=LARGE)
         )  # fmt: skip
     return [
         *found,

@@ -7,7 +7,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from experiments.proving_ground.course import LARGE, Array, Metrics, hall, sheet
+from experiments.proving_ground.course import LARGE, Array, Metrics, demand, hall, sheet
 from mjmr.claims import Bound, Claim
 from mjmr.geometry import rotation_matrix
 from mjmr.randomness import Streams
@@ -218,7 +218,7 @@ def _depth_error(
     model, data = simulation.model, simulation.data
     start = origin + frame @ pinhole.position
     group = np.array([1, 1, 0, 0, 0, 0], dtype=np.uint8)
-    hit, worst = np.zeros(1, dtype=np.int32), 0.0
+    hit, worst, compared = np.zeros(1, dtype=np.int32), 0.0, 0
     for v in range(2, depth.shape[0] - 2, 5):
         for u in range(2, depth.shape[1] - 2, 5):
             around = depth[v - 1 : v + 2, u - 1 : u + 2]
@@ -227,7 +227,8 @@ def _depth_error(
             way = frame @ pinhole.rays([u + 0.5, v + 0.5])
             length = np.linalg.norm(way)
             distance = mujoco.mj_ray(model, data, start, way / length, group, 1, -1, hit)
-            worst = max(worst, abs(distance / length - float(depth[v, u])))
+            worst, compared = max(worst, abs(distance / length - float(depth[v, u]))), compared + 1
+    demand("pixels with a depth", compared, 100)
     return worst
 
 

@@ -10,6 +10,7 @@ from experiments.proving_ground.course import (
     Array,
     Course,
     Metrics,
+    demand,
     hall,
     sheet,
 )
@@ -63,6 +64,8 @@ def unicycle(condition: Mapping[str, Any], seed: int) -> Metrics:
     window = round(0.5 / PERIOD)
     yaw = log.yaw[:, 0]
     rate = np.abs(yaw[window:] - yaw[:-window]) / (window * PERIOD)
+    demand("way [m]", log.ways[0], 30.0)
+    demand("turn [rad]", abs(yaw[-1] - yaw[0]), 2 * np.pi)
     return {
         "radius_m": _radius(log.poses[len(commands) // 2 :, 0, :2]),
         "largest_turn": float(rate.max()),
