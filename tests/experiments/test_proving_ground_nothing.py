@@ -81,3 +81,10 @@ def test_noise_that_moves_nothing_is_refused(monkeypatch):
     monkeypatch.setattr(noise, "_ranges", lambda model: (np.zeros(model.nu), np.zeros(model.nu)))
     with pytest.raises(course.NothingMeasuredError, match="fastest speed"):
         run(platform="koala", test="noise")
+
+
+def test_the_truck_rolls_over_at_a_speed_it_drove_not_only_one_it_was_asked_for():
+    found = run(platform="tamiya_txt1", test="roll-over")
+    # inner wheels spin: it never drives what it is asked for
+    assert 2.0 < found["rolls_driven"] < found["rolls_at"] - 0.05
+    assert found["held_driven"] < found["rolls_driven"]
