@@ -43,7 +43,12 @@ _START, _MEASURED = 2.0, 6.0  # s
 
 
 def floor_friction(world: Any, friction: float) -> None:
-    """Give the floor this coefficient of sliding friction; paws take the greater of two."""
+    """Give the floor this coefficient of sliding friction; paws take the greater of two.
+
+    0 leaves the floor as it is.
+    """
+    if not friction:
+        return
 
     def change(spec: Any) -> None:
         spec.geom("floor").friction[0] = friction

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from experiments.proving_ground import course, noise, study
+from experiments.proving_ground import aibo, course, noise, study
 from experiments.proving_ground.trial import trial
 from mjmr.claims import Bound
 from mjmr.conditions import Grid
@@ -88,3 +88,13 @@ def test_the_truck_rolls_over_at_a_speed_it_drove_not_only_one_it_was_asked_for(
     # inner wheels spin: it never drives what it is asked for
     assert 2.0 < found["rolls_driven"] < found["rolls_at"] - 0.05
     assert found["held_driven"] < found["rolls_driven"]
+
+
+def test_a_floor_is_as_it_is_unless_a_friction_is_named():
+    def sliding(friction):
+        world = course.hall(4.0)
+        aibo.floor_friction(world, friction)
+        return float(world.spec().geom("floor").friction[0])
+
+    assert sliding(0.0) == float(course.hall(4.0).spec().geom("floor").friction[0]) > 0.5
+    assert sliding(0.6) == 0.6
