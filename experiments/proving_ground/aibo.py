@@ -8,7 +8,7 @@ import numpy as np
 from controllers.legged.ers7_gaits import ERS7_TROT
 from controllers.legged.heading import HeadingLoop
 from controllers.legged.motion import AiboMotion
-from experiments.proving_ground.aibo_trials import get_up, kick, roll
+from experiments.proving_ground.aibo_trials import LegRates, get_up, kick, roll, world_with
 from experiments.proving_ground.course import (
     LARGE,
     Course,
@@ -16,7 +16,6 @@ from experiments.proving_ground.course import (
     Metrics,
     apart,
     by_condition,
-    hall,
     means,
     sheet,
     worst,
@@ -42,28 +41,13 @@ COMMANDS = {
 _START, _MEASURED = 2.0, 6.0  # s
 
 
-def floor_friction(world: Any, friction: float) -> None:
-    """Give the floor this coefficient of sliding friction; paws take the greater of two.
-
-    0 leaves the floor as it is.
-    """
-    if not friction:
-        return
-
-    def change(spec: Any) -> None:
-        spec.geom("floor").friction[0] = friction
-
-    world.edit(change)
-
-
 def engine() -> AiboMotion:
     """What walks and acts: the trot, the head at home, and every action."""
     return AiboMotion(ERS7_TROT)
 
 
 def _dog(condition: Mapping[str, Any], start: Any) -> tuple[Any, Any]:
-    world = hall(4.0)
-    floor_friction(world, condition["friction"])
+    world = world_with(condition["friction"], 4.0)
     return world, world.add_group(AiboERS7(engine()), [start])
 
 
@@ -75,26 +59,17 @@ def walk(condition: Mapping[str, Any], seed: int) -> Metrics:
         world, seed=seed, control_period=PERIOD, dt_max=condition["dt_ms"] / 1000.0
     )
     course = Course(simulation, group)
-    drive = simulation.drive_of(group)
-    rates: list[np.ndarray] = []
-
-    def measure() -> None:
-        if simulation.time > _START:
-            rates.append(np.abs(drive.joint_rates(simulation.data)) / AiboERS7.joint_rates)
-
-    simulation.watch_steps(measure)
+    rates = LegRates(simulation, group)
     ticks = round((_START + _MEASURED) / PERIOD)
     log = course.drive(np.tile(engine().command(asked), (ticks, 1))).log
     late = log.times > _START
     mean = log.twists[late, 0].mean(axis=0)
     yaw, times = log.yaw[late, 0], log.times[late]
-    legs = np.array(rates)[:, 0, :12]
     return {
         "forward_mm_s": 1000 * float(mean[0]),
         "left_mm_s": 1000 * float(mean[1]),
         "turn_rad_s": float((yaw[-1] - yaw[0]) / (times[-1] - times[0])),
-        "rate_p99": float(np.percentile(legs, 99)),
-        "rate_max": float(legs.max()),
+        "rate_p99": rates.p99(since=round(_START / simulation.timestep)),
         "tilt_deg": float(np.degrees(log.tilt)),
     }
 
@@ -205,6 +180,9 @@ def _walking() -> list[Claim]:
         sheet(NAME, "walk", "walk-rates", "servos turn no faster than the real ones",
               f"speed of leg joints / limit, 99th percentile, largest over commands, {_WHERE}",
               Bound("<=", 1.15), "rate_p99"),
+        sheet(NAME, "walk", "walk-upright", "stays on its feet",
+              f"largest tilt of the trunk, over commands, {_WHERE}", Bound("<=", 20.0), "tilt_deg",
+              unit="deg"),
         sheet(NAME, "straight", "straight-heading", "walks 3 m straight with its heading held",
               f"heading at the end, compass of 1 degree, largest over {_WHERE}",
               Bound("<=", 5.0), "heading_deg", unit="deg"),
@@ -226,7 +204,16 @@ def _acting() -> list[Claim]:
                   f"smallest over {_WHERE}", Bound(">=", share), _in_time(seconds), sizes=LARGE,
                   variant=variant)
         )  # fmt: skip
+    rates = "speed of leg joints / limit, 99th percentile of a trial, mean of trials, largest over"
+    words = "servos turn no faster than the real ones"
     found += [
+        sheet(NAME, "get-up", "up-rates", words, f"{rates} falls, {_WHERE}", Bound("<=", 1.15),
+              means("rate_p99"), sizes=LARGE),
+        sheet(NAME, "kick", "kick-rates", words, f"{rates} kicks, {_WHERE}", Bound("<=", 1.15),
+              means("rate_p99"), sizes=LARGE),
+        sheet(NAME, "kick", "kick-upright", "stands after a kick",
+              f"whether it fell, any trial of every kick, {_WHERE}", Bound("<=", 0.0), "fell",
+              sizes=LARGE),
         sheet(NAME, "roll", "ball-rolls", "the ball rolls some 3 m from 1 m/s",
               "way from 1 m/s to rest, 2 and 4 ms", Bound.within(2.5, 4.0),
               "distance_m", unit="m"),

@@ -34,7 +34,7 @@ _ROLLS = {FRONT: 0.0, LEFT: -np.pi / 2, RIGHT: np.pi / 2, BACK: np.pi}
 _STANDS = 0.1  # m; a robot on its belly is lower
 _GIVE_UP = 20.0  # s; five tries take less
 _BALL_RESTS = 0.02  # m/s; rolling friction lets it creep on
-_BALL_TIME = 20.0  # s
+_BALL_TIME, _KICK_TIME = 20.0, 2.2  # s
 
 
 def world_with(friction: float, half: float = 8.0) -> World:
@@ -44,8 +44,27 @@ def world_with(friction: float, half: float = 8.0) -> World:
     def floor(spec: Any) -> None:
         spec.geom("floor").friction[0] = friction
 
-    world.edit(floor)
+    if friction:  # 0: as the world has it
+        world.edit(floor)
     return world
+
+
+class LegRates:
+    """How fast the leg joints turn, as shares of the servos' limits, at every physics step."""
+
+    def __init__(self, simulation: Simulation, group: Group):
+        """Watch the first robot of ``group`` from now on."""
+        drive, data = simulation.drive_of(group), simulation.data
+        self._seen: list[Array] = []
+
+        def measure() -> None:
+            self._seen.append(np.abs(drive.joint_rates(data)[0, :12]) / AiboERS7.joint_rates[:12])
+
+        simulation.watch_steps(measure)
+
+    def p99(self, since: int = 0, until: int | None = None) -> float:
+        """99th percentile over joints and the steps from ``since`` to ``until``."""
+        return float(np.percentile(self._seen[since:until], 99))
 
 
 def fall(simulation: Simulation, group: Group, kind: int, rng: np.random.Generator) -> None:
@@ -82,7 +101,7 @@ def get_up(condition: Mapping[str, Any], seed: int) -> Metrics:
 
     Returns:
         ``up``, ``seconds`` from the command until it stood (and still stood half a second later),
-        ``tries``.
+        ``tries``, and ``rate_p99``, 99th percentile of leg joints' speeds / limits.
     """
     kind = FALLS.get(condition["variant"])
     if kind is None:
@@ -93,7 +112,7 @@ def get_up(condition: Mapping[str, Any], seed: int) -> Metrics:
     simulation = _simulation(world, condition, seed)
     fall(simulation, group, kind, Streams(seed).generator(f"fall {POSTURES[kind]}"))
     base, *_ = _addresses(simulation.model, group)
-    data, stood = simulation.data, []
+    data, stood, rates = simulation.data, [], LegRates(simulation, group)
 
     def look() -> None:
         upright = lies_as(data.xmat[base], float(data.xpos[base, 2])) == STANDING
@@ -108,7 +127,12 @@ def get_up(condition: Mapping[str, Any], seed: int) -> Metrics:
         if stood and simulation.time - stood[0] >= 0.5:
             break
     seconds = stood[0] if stood else _GIVE_UP
-    return {"up": bool(stood), "seconds": seconds, "tries": int(motion.bound.tries[0])}
+    return {
+        "up": bool(stood),
+        "seconds": seconds,
+        "tries": int(motion.bound.tries[0]),
+        "rate_p99": rates.p99(),
+    }
 
 
 def kick(condition: Mapping[str, Any], seed: int) -> Metrics:
@@ -118,7 +142,8 @@ def kick(condition: Mapping[str, Any], seed: int) -> Metrics:
 
     Returns:
         ``distance_m`` from where the ball lay to where it came to rest, ``angle_deg`` of that way,
-        anticlockwise from ahead, and whether the robot ``fell``.
+        anticlockwise from ahead, whether the robot ``fell``, and ``rate_p99`` during the kick, 99th
+        percentile of leg joints' speeds / limits.
     """
     code = KICKS.get(condition["variant"])
     if code is None:
@@ -135,7 +160,7 @@ def kick(condition: Mapping[str, Any], seed: int) -> Metrics:
     low, high = AiboERS7.joint_limits.T
     base, _, _, angles = _addresses(simulation.model, group)
     simulation.data.qpos[angles] = (simulation.data.qpos[angles] + off).clip(low, high)
-    data, seen = simulation.data, []
+    data, seen, rates = simulation.data, [], LegRates(simulation, group)
     simulation.observe(lambda: seen.append(simulation.truth.movers()[0, :2]))
     for t in simulation.ticks(_BALL_TIME):
         group.drive(motion.command(action=code))
@@ -147,6 +172,8 @@ def kick(condition: Mapping[str, Any], seed: int) -> Metrics:
         "distance_m": float(np.hypot(*way)),
         "angle_deg": math.degrees(math.atan2(way[1], way[0])),
         "fell": not stands,
+        # the kick itself: afterwards it stands and watches the ball
+        "rate_p99": rates.p99(until=round(_KICK_TIME / simulation.timestep)),
     }
 
 

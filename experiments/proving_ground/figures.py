@@ -29,7 +29,7 @@ SHOWN = {
     "tamiya_txt1": {
         "txt1-circle": "radius against the bicycle model",
         "txt1-turn-bound": "largest yaw rate at 0.3 rad/s",
-        "txt1-roll-over": "rolls over at full lock at",
+        "txt1-roll-over-driven": "drives at full lock until it rolls over",
     },
     "aibo_ers7": {
         "aibo-walk-forward": "forwards",

@@ -30,14 +30,19 @@ SECONDS, HOLD = 1.0, 20  # s, steps a value is held
 
 
 def noise(condition: Mapping[str, Any], seed: int) -> Metrics:
-    """One second of Halton noise on all actuators, from a random pose beside a wall and a box."""
+    """One second of Halton noise on all actuators, from a random pose in front of a box.
+
+    Every sensor is read ten times on the way.
+    """
     rng = Streams(seed).generator("start")
     platform = _robot(condition["platform"], rng)
     world = hall(4.0)
-    world.add_box(1.5, 0.0, 0.4, 0.4, height=0.4)
     pose = np.zeros(3)
     if not platform.anchored:
-        pose = rng.uniform([-3, -3, -np.pi], [0.5, 3, np.pi])
+        pose = rng.uniform([-2.5, -2.5, -np.pi], [2.5, 2.5, np.pi])
+        away = platform.radius + 0.2
+        x, y = pose[:2] + away * np.array([np.cos(pose[2]), np.sin(pose[2])])
+        world.add_box(x, y, 0.4, 0.4, yaw=pose[2], height=0.4, mass=3.0)
     group = world.add_group(platform, [pose])
     for sensor in (*_everywhere(), *_OF[condition["platform"]]()):
         # the AIBO's model has something called imu, and soccer robots have a localizer
@@ -51,10 +56,11 @@ def noise(condition: Mapping[str, Any], seed: int) -> Metrics:
     for row in low + halton * (high - low):
         data.ctrl[:] = row
         mujoco.mj_step(model, data, HOLD)
+        simulation.step += HOLD
         fastest = max(fastest, float(np.abs(data.qvel).max()))
-    for sensor in group.sensors.values():
-        sensor.capture(simulation.step, simulation.time)
-        sensor.read()
+        for sensor in group.sensors.values():
+            sensor.capture(simulation.step, simulation.time)
+            sensor.read()
     demand("fastest speed", fastest, 0.1)
     return {
         "warnings": int(data.warning.number.sum()),

@@ -22,7 +22,7 @@ def _wheels(dt: tuple[float, ...], turns: tuple[float, ...], speeds: tuple[float
         Grid(
             platform="tamiya_txt1",
             test="circle",
-            angle_deg=(10.0, 20.0, 28.0),
+            angle_deg=(10.0, 20.0, 28.0, -28.0) if len(dt) > 1 else (20.0, -28.0),
             speed=(0.5, 1.0, 2.0) if len(dt) > 1 else (1.0, 2.0),
             dt_ms=dt,
             seeds=1,

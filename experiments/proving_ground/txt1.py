@@ -41,12 +41,12 @@ def circle(condition: Mapping[str, Any], seed: int) -> Metrics:
     """Two rounds at a steering angle and a speed."""
     platform = TamiyaTXT1(command="steering")
     angle, speed = np.radians(condition["angle_deg"]), condition["speed"]
-    ideal = platform.wheelbase / np.tan(angle)
-    ticks = round(2 * 2 * np.pi * ideal / speed / PERIOD) + 50
+    ideal = platform.wheelbase / np.tan(angle)  # to the right below zero
+    ticks = round(2 * 2 * np.pi * abs(ideal) / speed / PERIOD) + 50
     commands = np.tile([speed, angle], (ticks, 1))
     commands[:20, 0] = 0.0  # steer first
     log = _course(condition, platform).drive(commands).log
-    radius = _radius(log.poses[ticks // 2 :, 0, :2])
+    radius = _radius(log.poses[ticks // 2 :, 0, :2]) * np.sign(log.yaw[-1, 0] - log.yaw[0, 0])
     return {
         "radius_m": radius,
         "error_pct": 100 * (radius / ideal - 1.0),
@@ -121,8 +121,8 @@ def claims() -> list[Claim]:
     """What the truck must do."""
     return [
         sheet(NAME, "circle", "circle", "turns as the bicycle model says",
-              "radius / (wheelbase / tan steering) - 1 at 10, 20, 28 degrees and 0.5, 1, 2 m/s, "
-              "2 and 5 ms", Bound("==", 0.0, 2.0), "error_pct", unit="%"),
+              "radius / (wheelbase / tan steering) - 1 at 10, 20, 28 degrees left and right, 0.5, "
+              "1, 2 m/s, 2 and 5 ms", Bound("==", 0.0, 2.0), "error_pct", unit="%"),
         sheet(NAME, "unicycle", "unicycle-radius", "1 m/s at 0.3 rad/s", "radius of the circle, "
               "2 and 5 ms", Bound.within(3.33 * 0.98, 3.33 * 1.02), "radius_m", unit="m",
               published="3.33 m", variant="plain"),
