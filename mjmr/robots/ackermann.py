@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mjmr.jit import njit
-from mjmr.robots.free_body import free_poses, free_twists
+from mjmr.robots.free_body import FreeBodies
 from mjmr.robots.platform import Array
 from mjmr.robots.rest import rest
 
@@ -19,7 +19,7 @@ COUNTED = WHEELS[:2]  # never steered: their mean and difference are the bicycle
 SPRUNG = ("heave_rear", "roll_rear", "heave_front", "roll_front")
 
 
-class AckermannDrive:
+class AckermannDrive(FreeBodies):
     """A velocity servo on the wheels' mean speed and a position servo on the steering.
 
     It serves any free body with a joint ``free`` whose origin is on the floor below the middle of
@@ -49,15 +49,14 @@ class AckermannDrive:
         """
         self._unicycle = unicycle
         self._half_step = model.opt.timestep / 2.0
-        free = [model.joint(f"{p}free") for p in prefixes]
-        base = int(model.jnt_bodyid[free[0].id])
+        super().__init__(model, prefixes)
+        base = self._base
         # a robot's joints are next to each other, the free one first
         own = np.flatnonzero(model.body_rootid[model.jnt_bodyid] == base)
-        size = np.append(model.jnt_qposadr, model.nq)[own[-1] + 1] - free[0].qposadr[0]
-        speeds = np.append(model.jnt_dofadr, model.nv)[own[-1] + 1] - free[0].dofadr[0]
-        self._all_qpos = np.array([j.qposadr[0] for j in free])[:, None] + np.arange(size)
-        self._all_qvel = np.array([j.dofadr[0] for j in free])[:, None] + np.arange(speeds)
-        self._qpos, self._qvel = self._all_qpos[:, :7], self._all_qvel[:, :6]
+        size = np.append(model.jnt_qposadr, model.nq)[own[-1] + 1] - self._qpos[0, 0]
+        speeds = np.append(model.jnt_dofadr, model.nv)[own[-1] + 1] - self._qvel[0, 0]
+        self._all_qpos = self._qpos[:, :1] + np.arange(size)
+        self._all_qvel = self._qvel[:, :1] + np.arange(speeds)
         wheels = [[model.joint(f"{p}{w}") for w in WHEELS] for p in prefixes]
         self._counted = np.array([[j.qposadr[0] for j in row[: len(COUNTED)]] for row in wheels])
         servos = [[model.actuator(f"{p}{s}").id for s in ("drive", "steer")] for p in prefixes]
@@ -94,18 +93,6 @@ class AckermannDrive:
         data.qpos[self._all_qpos] = rows
         data.qvel[self._all_qvel] = 0.0
         data.act[self._act] = 0.0
-
-    def poses(self, data: "mujoco.MjData") -> Array:
-        """Poses (n, 3) of the middle of the rear axle, world frame."""
-        return free_poses(data.qpos, self._qpos)
-
-    def base_poses(self, data: "mujoco.MjData") -> Array:
-        """Poses of the bases (n, 7): position, quaternion."""
-        return data.qpos[self._qpos]
-
-    def twists(self, data: "mujoco.MjData") -> Array:
-        """Twists (n, 3), body frame."""
-        return free_twists(data.qpos, data.qvel, self._qpos, self._qvel)
 
     def wheel_angles(self, data: "mujoco.MjData") -> Array:
         """Angles the rear wheels have turned (n, 2) [rad], left and right, forwards positive."""

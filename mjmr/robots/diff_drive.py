@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mjmr.jit import njit
-from mjmr.robots.free_body import free_poses, free_twists, twist_inertia
+from mjmr.robots.free_body import FreeBodies, twist_inertia
 from mjmr.robots.platform import Array
 from mjmr.robots.rest import alone, rest
 
@@ -18,7 +18,7 @@ WHEELS = ("wheel_left", "wheel_right")
 TREADS = ("tread_left", "tread_right")
 
 
-class DiffDrive:
+class DiffDrive(FreeBodies):
     """Wheels' velocity servos whose set points are ramped, with feed-forward.
 
     Commands are (forward, turn). It serves any free body with a joint ``free`` whose origin is on
@@ -56,9 +56,7 @@ class DiffDrive:
                 the track.
         """
         self._half_step = model.opt.timestep / 2.0
-        free = [model.joint(f"{p}free") for p in prefixes]
-        self._qpos = np.array([j.qposadr[0] for j in free])[:, None] + np.arange(7)
-        self._qvel = np.array([j.dofadr[0] for j in free])[:, None] + np.arange(6)
+        super().__init__(model, prefixes)
         wheels = [[model.joint(f"{p}{w}") for w in WHEELS] for p in prefixes]
         self._wheel_qpos = np.array([[j.qposadr[0] for j in row] for row in wheels])
         self._wheel_qvel = np.array([[j.dofadr[0] for j in row] for row in wheels])
@@ -67,8 +65,7 @@ class DiffDrive:
         further = [[model.joint(f"{p}{w}") for side in geared for w in side] for p in prefixes]
         self._geared_qpos = np.array([[j.qposadr[0] for j in row] for row in further], dtype=int)
         self._geared_qvel = np.array([[j.dofadr[0] for j in row] for row in further], dtype=int)
-        base = int(model.jnt_bodyid[free[0].id])
-        stands = rest(model, base, self._qvel[0, [2, 4]])[self._qpos[0]]
+        stands = rest(model, self._base, self._qvel[0, [2, 4]])[self._qpos[0]]
         self._height, self._pitch = float(stands[2]), 2.0 * math.atan2(stands[5], stands[3])
         self.radius = float(model.geom_size[model.geom(f"{prefixes[0]}{TREADS[0]}").id, 0])
         self.rolling_radius = rolling_radius or self.radius + self._height / 2.0
@@ -78,7 +75,7 @@ class DiffDrive:
         sideways = np.insert(self.wheel_speeds, 1, 0.0, axis=1)
         turning = np.concatenate([self._wheel_qvel[0], self._geared_qvel[0]])
         sides = [0, 1] + [side for side, names in enumerate(geared) for _ in names]
-        inertia = twist_inertia(alone(model, base), self._qvel[0], turning, sideways[sides])
+        inertia = twist_inertia(alone(model, self._base), self._qvel[0], turning, sideways[sides])
         # a servo of gain k gives the torque t when its set point is t / k ahead
         share = np.linalg.inv(self.wheel_speeds).T
         share /= float(model.actuator_gainprm[self._servo[0, 0], 0])
@@ -101,18 +98,6 @@ class DiffDrive:
         data.qvel[self._wheel_qvel] = 0.0
         data.qvel[self._geared_qvel] = 0.0
         data.act[self._act] = 0.0
-
-    def poses(self, data: "mujoco.MjData") -> Array:
-        """Poses (n, 3) of the middle of the axle, world frame."""
-        return free_poses(data.qpos, self._qpos)
-
-    def base_poses(self, data: "mujoco.MjData") -> Array:
-        """Poses of the bases (n, 7): position, quaternion."""
-        return data.qpos[self._qpos]
-
-    def twists(self, data: "mujoco.MjData") -> Array:
-        """Twists (n, 3), body frame."""
-        return free_twists(data.qpos, data.qvel, self._qpos, self._qvel)
 
     def wheel_angles(self, data: "mujoco.MjData") -> Array:
         """Angles the wheels have turned (n, 2) [rad], left and right, forwards positive."""

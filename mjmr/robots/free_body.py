@@ -1,6 +1,7 @@
 """Planar poses, twists and inertia of robots that are free bodies on wheels."""
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -59,6 +60,29 @@ def free_twists(qpos, qvel, free, velocity):
             + (w * w - x * x - y * y + z * z) * r
         )  # fmt: skip
     return twists
+
+
+class FreeBodies:
+    """Robots whose base is a free body, with a joint ``free``: where they are and how they move."""
+
+    def __init__(self, model: "mujoco.MjModel", prefixes: Sequence[str]):
+        """Look the joints up once; arguments as of :meth:`mjmr.robots.platform.Platform.bind`."""
+        free = [model.joint(f"{p}free") for p in prefixes]
+        self._qpos = np.array([j.qposadr[0] for j in free])[:, None] + np.arange(7)
+        self._qvel = np.array([j.dofadr[0] for j in free])[:, None] + np.arange(6)
+        self._base = int(model.jnt_bodyid[free[0].id])  # of the first robot
+
+    def poses(self, data: "mujoco.MjData") -> Array:
+        """Poses (n, 3) of the bases' origins, world frame; yaw is the heading of their x axis."""
+        return free_poses(data.qpos, self._qpos)
+
+    def base_poses(self, data: "mujoco.MjData") -> Array:
+        """Poses of the bases (n, 7): position, quaternion."""
+        return data.qpos[self._qpos]
+
+    def twists(self, data: "mujoco.MjData") -> Array:
+        """Twists (n, 3) in the frame of the heading: velocity of the origin, and yaw rate."""
+        return free_twists(data.qpos, data.qvel, self._qpos, self._qvel)
 
 
 def twist_inertia(

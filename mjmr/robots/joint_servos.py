@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mjmr.errors import InvalidInputError
-from mjmr.robots.free_body import free_poses, free_twists
+from mjmr.robots.free_body import FreeBodies
 from mjmr.robots.motion import BoundMotion, Proprioception
 from mjmr.robots.platform import Array
 from mjmr.robots.rest import alone
@@ -18,7 +18,7 @@ _SETTLE = 2.0  # s; a dropped robot is at rest long before
 _DROP = 0.004  # m
 
 
-class JointServos:
+class JointServos(FreeBodies):
     """Free bodies with k servoed joints each; a frame is the firmware's period.
 
     At every frame the servos' targets go towards what is wanted by at most rate x frame. What is
@@ -52,9 +52,7 @@ class JointServos:
             motion: Engine for these robots; without one commands are joint angles (n, k).
         """
         self.frame = frame
-        free = [model.joint(f"{p}free") for p in prefixes]
-        self._qpos = np.array([j.qposadr[0] for j in free])[:, None] + np.arange(7)
-        self._qvel = np.array([j.dofadr[0] for j in free])[:, None] + np.arange(6)
+        super().__init__(model, prefixes)
         hinges = [[model.joint(f"{p}{j}") for j in joints] for p in prefixes]
         self._angle = np.array([[j.qposadr[0] for j in row] for row in hinges])
         self._rate = np.array([[j.dofadr[0] for j in row] for row in hinges])
@@ -65,7 +63,7 @@ class JointServos:
         self._step = np.asarray(rates) * frame
         self._names = [p.rstrip("/") for p in prefixes]
         self._home = np.asarray(home, dtype=np.float64)
-        self._height, self._tilt, self._sagged = self._stand(model, int(free[0].id))
+        self._height, self._tilt, self._sagged = self._stand(model)
         self._motion = motion
         self._command = np.zeros((len(prefixes), 0))
 
@@ -82,18 +80,6 @@ class JointServos:
         data.qvel[self._qvel] = 0.0
         data.qvel[self._rate] = 0.0
         data.ctrl[self._servo] = self._home
-
-    def poses(self, data: "mujoco.MjData") -> Array:
-        """Poses (n, 3) of the bases, world frame."""
-        return free_poses(data.qpos, self._qpos)
-
-    def base_poses(self, data: "mujoco.MjData") -> Array:
-        """Poses of the bases (n, 7): position, quaternion."""
-        return data.qpos[self._qpos]
-
-    def twists(self, data: "mujoco.MjData") -> Array:
-        """Twists (n, 3) in the frame of the heading."""
-        return free_twists(data.qpos, data.qvel, self._qpos, self._qvel)
 
     def joint_angles(self, data: "mujoco.MjData") -> Array:
         """Measured angles (n, k) [rad]."""
@@ -153,7 +139,7 @@ class JointServos:
             names = ", ".join(self._names[i] for i in bad)
             raise InvalidInputError(f"joint targets must be finite; they are not for {names}")
 
-    def _stand(self, model: "mujoco.MjModel", free: int) -> tuple[float, Array, Array]:
+    def _stand(self, model: "mujoco.MjModel") -> tuple[float, Array, Array]:
         """Height, tilt (4,) and joint angles (k,) in which the first robot comes to rest.
 
         It is dropped from just above the floor in a copy of the model in which nothing else
@@ -161,14 +147,13 @@ class JointServos:
         """
         import mujoco
 
-        base = int(model.jnt_bodyid[free])
-        only = alone(model, base)
+        only = alone(model, self._base)
         data = mujoco.MjData(only)
         data.qpos[self._angle] = self._home
         data.ctrl[self._servo] = self._home
         data.qpos[self._qpos[:, 2]] = 1.0
         mujoco.mj_kinematics(only, data)
-        own = (model.body_rootid[model.geom_bodyid] == base) & (model.geom_contype > 0)
+        own = (model.body_rootid[model.geom_bodyid] == self._base) & (model.geom_contype > 0)
         lowest = (data.geom_xpos[own, 2] - only.geom_rbound[own]).min()
         data.qpos[self._qpos[:, 2]] = 1.0 - lowest + _DROP
         mujoco.mj_step(only, data, round(_SETTLE / only.opt.timestep))

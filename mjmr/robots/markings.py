@@ -6,9 +6,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from mjmr.assets import model_path
+
 if TYPE_CHECKING:
     import mujoco
 
+_HALF_DISC = 0.0008  # m, half the thickness of the disc on top
 Rgb = tuple[float, float, float]
 Rgba = tuple[float, float, float, float]
 
@@ -97,3 +100,38 @@ def draw_digit(site: "mujoco.MjsSite", body: "mujoco.MjsBody", digit: int, heigh
                 group=1,
                 mass=0,
             )
+
+
+def marked_model(
+    name: str, number: int, team: str, *, disc: float, digit: float
+) -> "mujoco.MjSpec":
+    """A robot's model with its team's band and disc on top, and its number on the back.
+
+    Args:
+        name: Of the model, which has a material ``team``, a body ``base`` and sites ``top`` and
+            ``back`` on it.
+        number: Its last digit is shown.
+        team: One of ``TEAM_COLOURS``.
+        disc: Radius of the disc [m].
+        digit: Height of the digit [m].
+    """
+    import mujoco
+
+    spec = mujoco.MjSpec.from_file(str(model_path(name)))
+    for key in list(spec.keys):
+        spec.delete(key)
+    rgba = TEAM_COLOURS[team]
+    spec.material("team").rgba = rgba
+    base = spec.body("base")
+    base.add_geom(
+        type=mujoco.mjtGeom.mjGEOM_CYLINDER,
+        pos=np.array(spec.site("top").pos) + [0.0, 0.0, _HALF_DISC],
+        size=[disc, _HALF_DISC, 0],
+        rgba=rgba,
+        contype=0,
+        conaffinity=0,
+        group=1,
+        mass=0,
+    )
+    draw_digit(spec.site("back"), base, number % 10, height=digit)
+    return spec

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mjmr.jit import njit
-from mjmr.robots.free_body import free_poses, free_twists, total_mass, twist_inertia
+from mjmr.robots.free_body import FreeBodies, total_mass, twist_inertia
 from mjmr.robots.platform import FLOOR, Array
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def roll_on_floor(spec: "mujoco.MjSpec", prefixes: Sequence[str]) -> None:
             )
 
 
-class OmniDrive:
+class OmniDrive(FreeBodies):
     """Wheels' velocity servos whose set points are ramped, with feed-forward.
 
     Nothing but wheel speeds is closed: heading and position are what the contacts make of them.
@@ -48,9 +48,7 @@ class OmniDrive:
     def __init__(self, model: "mujoco.MjModel", prefixes: Sequence[str]):
         """Look up every index once, and the geometry of the wheels."""
         self._half_step = model.opt.timestep / 2.0
-        free = [model.joint(f"{p}free") for p in prefixes]
-        self._qpos = np.array([j.qposadr[0] for j in free])[:, None] + np.arange(7)
-        self._qvel = np.array([j.dofadr[0] for j in free])[:, None] + np.arange(6)
+        super().__init__(model, prefixes)
         wheels = [[model.joint(f"{p}wheel{k}") for k in range(WHEELS)] for p in prefixes]
         self._wheel_qpos = np.array([[j.qposadr[0] for j in row] for row in wheels])
         self._wheel_qvel = np.array([[j.dofadr[0] for j in row] for row in wheels])
@@ -84,18 +82,6 @@ class OmniDrive:
         data.qvel[self._qvel] = 0.0
         data.qvel[self._wheel_qvel] = 0.0
         data.act[self._act] = 0.0
-
-    def poses(self, data: "mujoco.MjData") -> Array:
-        """Poses (n, 3), world frame; yaw is the heading of the body's x axis in the plane."""
-        return free_poses(data.qpos, self._qpos)
-
-    def base_poses(self, data: "mujoco.MjData") -> Array:
-        """Poses of the bases (n, 7): position, quaternion."""
-        return data.qpos[self._qpos]
-
-    def twists(self, data: "mujoco.MjData") -> Array:
-        """Twists (n, 3), body frame: velocity of the point on the floor below the centre."""
-        return free_twists(data.qpos, data.qvel, self._qpos, self._qvel)
 
     def ramp(self, data: "mujoco.MjData", start: Array, target: Array, period: float) -> None:
         """Ramp the wheels' set points from ``start`` to ``target`` over one period.

@@ -6,11 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mjmr.assets import model_path
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.robots.ackermann import COUNTED, AckermannDrive
 from mjmr.robots.diff_drive import wheel_speeds
-from mjmr.robots.markings import TEAM_COLOURS, draw_digit
+from mjmr.robots.markings import marked_model
 from mjmr.robots.platform import Array, Drive, DriveLimits, Platform
 
 if TYPE_CHECKING:
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
     from mjmr.sensors.base import Sensor
 
 COMMANDS = {"unicycle": ("forward", "turn"), "steering": ("forward", "steering")}
-_HALF_DISC = 0.0008  # m, half the thickness of the disc on top
 
 
 class TamiyaTXT1(Platform):
@@ -93,26 +91,7 @@ class TamiyaTXT1(Platform):
 
     def model(self, number: int, team: str) -> "mujoco.MjSpec":
         """Model of one robot with its team's band and disc, and its number on the back."""
-        import mujoco
-
-        spec = mujoco.MjSpec.from_file(str(model_path(self.name)))
-        for key in list(spec.keys):
-            spec.delete(key)
-        rgba = TEAM_COLOURS[team]
-        spec.material("team").rgba = rgba
-        base = spec.body("base")
-        base.add_geom(
-            type=mujoco.mjtGeom.mjGEOM_CYLINDER,
-            pos=np.array(spec.site("top").pos) + [0.0, 0.0, _HALF_DISC],
-            size=[0.05, _HALF_DISC, 0],
-            rgba=rgba,
-            contype=0,
-            conaffinity=0,
-            group=1,
-            mass=0,
-        )
-        draw_digit(spec.site("back"), base, number % 10, height=0.06)
-        return spec
+        return marked_model(self.name, number, team, disc=0.05, digit=0.06)
 
     def bind(self, model: "mujoco.MjModel", prefixes: Sequence[str]) -> Drive:
         """Drive of the robots attached under ``prefixes``."""
