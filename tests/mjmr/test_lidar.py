@@ -447,3 +447,24 @@ def test_bad_places_and_materials_are_refused():
     twice = robots.mount(Lidar(position=INSIDE), "second")
     with pytest.raises(InvalidInputError, match="already"):
         robots.mount(twice, "second")
+
+
+@pytest.mark.parametrize("rise", [0.0, 0.05])
+def test_housings_that_cover_each_other_are_still_seen(rise):
+    """Two scanners on one mount, the second as high or partly above: neither hides the other."""
+    world = World.rectangle(6.0, 6.0, wall_height=0.05)
+    seer = world.add_group(Pioneer2DX, [[-1.0, 0.0, 0.0]])
+    seen = world.add_group(Pioneer2DX, [[1.0, 0.0, math.pi]])
+    place = np.array([0.0, 0.0, 0.5])
+    for k in range(2):
+        housing = {"housing": (0.02, 0.02, 0.1), "position": place + [0.0, 0.0, k * rise]}
+        seen.mount(Lidar(**housing), f"lidar{k}")
+    # a site at a position is a housing's foot
+    eye = {"beams": 1, "max_range": 4.0}
+    heights = (0.51, 0.55, 0.59)
+    lidars = [
+        seer.mount(Lidar(position=[0, 0, z], **eye), f"eye{i}") for i, z in enumerate(heights)
+    ]
+    tick(Simulation(world, control_period=0.1))
+    for lidar in lidars:
+        assert lidar.read()[0, 0] == pytest.approx(1.99, abs=0.01)
