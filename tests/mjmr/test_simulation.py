@@ -9,6 +9,7 @@ from mjmr.faults import Fault
 from mjmr.geometry import rotate
 from mjmr.kinematics import KinematicSimulation
 from mjmr.robots.soccer_bot import SoccerBot
+from mjmr.sensors.compass import Compass
 from mjmr.simulation import Simulation
 from mjmr.world import World
 from tests.mjmr.worlds import BOTH, drive, ramp, soccer
@@ -449,7 +450,7 @@ def test_a_sensor_has_one_group():
     others = world.add_group(SoccerBot, [[1.0, 0.0, 0.0]])
     eye = Localizer()
     robots.mount(eye)
-    with pytest.raises(InvalidInputError, match="another group"):
+    with pytest.raises(InvalidInputError, match="on group .soccer_bot. already"):
         others.mount(eye)
 
 
@@ -471,3 +472,32 @@ def test_observers_see_the_start_once():
         for _ in simulation.ticks(seconds):
             pass
     np.testing.assert_allclose(seen, np.arange(13) / 60)
+
+
+@pytest.mark.parametrize("kind", BOTH)
+def test_a_snapshot_from_before_the_start_has_the_first_samples_again(kind):
+    world, robots = soccer([[0.0, 0.0, 0.0]])
+    simulation = kind(world, seed=1)
+    snapshot = simulation.snapshot()
+    runs = []
+    for _ in range(2):
+        runs.append([robots.localizer.read().copy() for _ in simulation.ticks(0.1)])
+        simulation.restore(snapshot)
+    assert np.isfinite(runs[0][0]).all()
+    np.testing.assert_array_equal(runs[0], runs[1])
+
+
+def test_a_mount_that_was_refused_leaves_nothing_behind():
+    world, robots = soccer([[0.0, 0.0, 0.0]])
+    others = world.add_group(SoccerBot, [[1.0, 0.0, 0.0]])
+    robots.mount(Compass())
+    spare = Compass()
+    with pytest.raises(InvalidInputError, match="already"):
+        robots.mount(spare)
+    others.mount(spare)
+    with pytest.raises(InvalidInputError, match="mounted on group 'soccer_bot_1_' already"):
+        others.mount(spare, "twin")
+    for name in ("n", "start", "drive", "command", "sensors"):
+        with pytest.raises(InvalidInputError, match="attribute that every group has"):
+            robots.mount(Compass(), name)
+    assert list(robots.sensors) == ["localizer", "compass"]
