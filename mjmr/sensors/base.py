@@ -55,9 +55,13 @@ class Sensor(ABC):
     only the state it needs is stored; the sample itself is computed at its first read, from that
     state and from random numbers that depend on (sensor, robot, k) alone. So who reads, and how
     often, changes nothing.
+
+    Attributes:
+        stands: Whether it can stand in the world, without robots that carry it.
     """
 
     name = "sensor"
+    stands = False
 
     def __init__(self, *, rate: float, latency: float = 0.0, phase: float = 0.0):
         """Set the schedule.
@@ -68,8 +72,8 @@ class Sensor(ABC):
             phase: Instant of the first sample [s].
 
         Raises:
-            InvalidInputError: A rate that is not positive, or a latency or phase that is negative or
-                not finite.
+            InvalidInputError: A rate that is not positive, a latency or phase that is negative, or
+                one that is not finite.
         """
         if not (rate > 0 and math.isfinite(rate)):
             raise InvalidInputError(f"a sensor's rate must be positive; got {rate} Hz")

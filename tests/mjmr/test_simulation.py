@@ -9,7 +9,17 @@ from mjmr.faults import Fault
 from mjmr.geometry import rotate
 from mjmr.kinematics import KinematicSimulation
 from mjmr.robots.soccer_bot import SoccerBot
-from mjmr.sensors.compass import Compass
+from mjmr.sensors import (
+    IMU,
+    Bumper,
+    Camera,
+    Compass,
+    Lidar,
+    LineOfSight,
+    Localizer,
+    PanTilt,
+    WheelEncoders,
+)
 from mjmr.simulation import Simulation
 from mjmr.world import World
 from tests.mjmr.worlds import BOTH, drive, ramp, soccer
@@ -272,6 +282,8 @@ def test_the_timestep_divides_the_control_period():
     simulation = Simulation(world, control_period=1 / 60, dt_max=0.005)
     assert simulation.substeps == 4
     assert simulation.model.opt.timestep == pytest.approx(1 / 240)
+    world, robots = soccer(POSES)
+    robots.mount(Localizer(rate=10.0))
     assert KinematicSimulation(world, control_period=0.1, dt_max=0.1).substeps == 1
 
 
@@ -444,8 +456,6 @@ def test_a_world_serves_one_simulation_at_a_time():
 
 
 def test_a_sensor_has_one_group():
-    from mjmr.sensors.localizer import Localizer
-
     world, robots = soccer([[-1.0, 0.0, 0.0]])
     others = world.add_group(SoccerBot, [[1.0, 0.0, 0.0]])
     eye = Localizer()
@@ -501,3 +511,31 @@ def test_a_mount_that_was_refused_leaves_nothing_behind():
         with pytest.raises(InvalidInputError, match="attribute that every group has"):
             robots.mount(Compass(), name)
     assert list(robots.sensors) == ["localizer", "compass"]
+
+
+def test_robots_have_names_that_are_nobody_elses():
+    """Shapes are told apart by them: a robot called box0 would be taken for the box."""
+    world, _ = soccer([[-2.0 + 0.35 * k, 1.0, 0.0] for k in range(11)], name="r")
+    with pytest.raises(InvalidInputError, match="robots named r10 already"):
+        world.add_group(SoccerBot, [[0.0, 0.0, 0.0]], name="r1")
+    for name in ("box", "ball1", "cart", "a/b", ""):
+        with pytest.raises(InvalidInputError, match="a group's name"):
+            world.add_group(SoccerBot, [[0.0, 0.0, 0.0]], name=name)
+    world.add_group(SoccerBot, [[0.0, 0.0, 0.0]], name="boxer")
+    assert [group.name for group in world.groups] == ["r", "boxer"]
+
+
+def test_what_stands_in_the_world_needs_no_robot():
+    world, robots = soccer([[0.0, 0.0, 0.0]])
+    for sensor in (Compass(), Localizer(), Lidar(), IMU(), Bumper(), WheelEncoders(), PanTilt()):
+        with pytest.raises(InvalidInputError, match="is mounted on robots"):
+            world.mount(sensor)
+    with pytest.raises(InvalidInputError, match="is mounted already"):
+        world.mount(robots.mount(LineOfSight()))
+    above, middle = (0.0, 0.0, 2.0), (0.0, 0.0, 0.0)
+    world.add_camera(Camera(), position=above, look_at=middle)
+    spare = Camera()
+    with pytest.raises(InvalidInputError, match="named 'camera'"):
+        world.add_camera(spare, position=above, look_at=middle)
+    world.add_camera(spare, position=above, look_at=middle, name="spare")
+    assert list(world.sensors) == ["camera", "spare"]
