@@ -252,14 +252,21 @@ class World:
 
         Raises:
             UnknownNameError: No such group; lists those there are.
-            InvalidInputError: Poses of another shape, not finite or outside the walls.
+            InvalidInputError: Poses of another shape, not finite or outside the walls. Then all
+                groups start where they did.
         """
         groups = {group.name: group for group in self.groups}
-        for name, start in poses.items():
-            if name not in groups:
-                raise UnknownNameError("group", name, groups)
-            groups[name].start_at(start)
-            self._check_inside(groups[name])
+        before = [(group, group.start) for group in self.groups]
+        try:
+            for name, start in poses.items():
+                if name not in groups:
+                    raise UnknownNameError("group", name, groups)
+                groups[name].start_at(start)
+                self._check_inside(groups[name])
+        except InvalidInputError:
+            for group, start in before:
+                group.start = start
+            raise
 
     def add_camera(
         self,

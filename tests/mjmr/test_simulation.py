@@ -539,3 +539,12 @@ def test_what_stands_in_the_world_needs_no_robot():
         world.add_camera(spare, position=above, look_at=middle)
     world.add_camera(spare, position=above, look_at=middle, name="spare")
     assert list(world.sensors) == ["camera", "spare"]
+
+
+def test_starts_that_are_refused_change_nothing():
+    world, robots = soccer(POSES)
+    others = world.add_group(SoccerBot, [[1.5, 0.0, 0.0]], name="others")
+    with pytest.raises(InvalidInputError, match="outside the walls"):
+        world.start_at({"soccer_bot": np.array(POSES) + 0.1, "others": [[9.0, 0.0, 0.0]]})
+    np.testing.assert_array_equal(robots.start, POSES)
+    np.testing.assert_array_equal(others.start, [[1.5, 0.0, 0.0]])
