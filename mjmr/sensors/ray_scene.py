@@ -162,7 +162,7 @@ class RayScene(Stage):
         clear = clear_segments(
             starts, ends, start_owners, end_owners, tuple(self._table), *self._places
         )
-        if self._other_kinds:
+        if self._other_kinds and len(ends):
             self._mask[:] = 0
             self._mask[_REST] = 1
             for i, start in enumerate(starts):
