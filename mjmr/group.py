@@ -128,12 +128,19 @@ class Group:
             The sensor.
 
         Raises:
-            InvalidInputError: The name is taken, or the sensor is on another group.
+            InvalidInputError: The name is taken, or the sensor is mounted already.
         """
         key = name or sensor.name
-        if sensor.carrier not in (None, self):
-            raise InvalidInputError(f"this {sensor.name} is mounted on another group already")
-        sensor.carrier = self
+        if sensor.carrier is not None:
+            raise InvalidInputError(
+                f"this {sensor.name} is mounted on group {sensor.carrier.name!r} already; make "
+                "another one"
+            )
+        if key not in self.sensors and (key in self.__dict__ or hasattr(type(self), key)):
+            raise InvalidInputError(
+                f"{key!r} is an attribute that every group has; mount the {sensor.name} under "
+                "another name"
+            )
         if key in self.sensors and (
             key not in self._replaceable or self.sensors[key].name != sensor.name
         ):
@@ -142,6 +149,7 @@ class Group:
                 f"name than {', '.join(self.sensors)}"
             )
         self._replaceable.discard(key)
+        sensor.carrier = self
         self.sensors[key] = sensor
         setattr(self, key, sensor)
         return sensor

@@ -247,9 +247,10 @@ class TickedSimulation(ABC):
             )
         count = round(duration / self.control_period)
         observers = self._observers
+        # at the start, or after a restore to before it
+        self._sample_due()
         if not self._started:
             self._started = True
-            self._sample_due()
             for observe in observers:
                 observe()
         for _ in range(count):

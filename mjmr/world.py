@@ -4,6 +4,7 @@ The declaration is what planners, meters and films read; the MjSpec is built fro
 simulation or a film needs one, so that a kinematic run loads no MuJoCo.
 """
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
 FLOORS = ("carpet", "concrete")
 LIGHTINGS = ("even", "uneven")
+_PROPS = ("box", "ball", "cart")  # what named_props() calls them, before a number
+_GROUP_NAME = re.compile(rf"(?!({'|'.join(_PROPS)})\d*$)[^/]+")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -216,7 +219,8 @@ class World:
             options: See :class:`mjmr.group.Group`.
 
         Raises:
-            InvalidInputError: Poses of another shape, not finite or outside the walls.
+            InvalidInputError: Poses of another shape, not finite or outside the walls, or robots
+                that would be called like others or like props.
         """
         instance = platform() if isinstance(platform, type) else platform
         taken = sum(g.platform.name == instance.name for g in self.groups)
@@ -226,6 +230,17 @@ class World:
         group.check_site(self)
         if any(g.name == group.name for g in self.groups):
             raise InvalidInputError(f"there is a group named {group.name!r} already")
+        if not _GROUP_NAME.fullmatch(group.name):
+            raise InvalidInputError(
+                f"a group's name has no slash and is none of {', '.join(_PROPS)}, which props are "
+                f"called, with or without a number; got {group.name!r}"
+            )
+        shared = {name for g in self.groups for name in g.names}.intersection(group.names)
+        if shared:
+            raise InvalidInputError(
+                f"there are robots named {', '.join(sorted(shared))} already; give the group "
+                f"{group.name!r} another name"
+            )
         self.groups.append(group)
         return group
 
@@ -237,14 +252,21 @@ class World:
 
         Raises:
             UnknownNameError: No such group; lists those there are.
-            InvalidInputError: Poses of another shape, not finite or outside the walls.
+            InvalidInputError: Poses of another shape, not finite or outside the walls. Then all
+                groups start where they did.
         """
         groups = {group.name: group for group in self.groups}
-        for name, start in poses.items():
-            if name not in groups:
-                raise UnknownNameError("group", name, groups)
-            groups[name].start_at(start)
-            self._check_inside(groups[name])
+        before = [(group, group.start) for group in self.groups]
+        try:
+            for name, start in poses.items():
+                if name not in groups:
+                    raise UnknownNameError("group", name, groups)
+                groups[name].start_at(start)
+                self._check_inside(groups[name])
+        except InvalidInputError:
+            for group, start in before:
+                group.start = start
+            raise
 
     def add_camera(
         self,
@@ -271,6 +293,7 @@ class World:
         Raises:
             InvalidInputError: The name is taken, or the camera or its pose cannot be used.
         """
+        self._check_free(name)
         camera.stand(position, look_at, quaternion)
         return self.mount(camera, name)
 
@@ -285,11 +308,15 @@ class World:
             The sensor.
 
         Raises:
-            InvalidInputError: The name is taken.
+            InvalidInputError: The name is taken, or the sensor is mounted already or needs a robot
+                that carries it.
         """
         key = name or sensor.name
-        if key in self.sensors:
-            raise InvalidInputError(f"there is a sensor named {key!r} in this world already")
+        self._check_free(key)
+        if not sensor.stands:
+            raise InvalidInputError(f"a {sensor.name} is mounted on robots: group.mount(...)")
+        if sensor.carrier is not None or sensor in self.sensors.values():
+            raise InvalidInputError(f"this {sensor.name} is mounted already; make another one")
         self.sensors[key] = sensor
         return sensor
 
@@ -346,6 +373,10 @@ class World:
         from mjmr.world_spec import export_xml
 
         return export_xml(self, timestep)
+
+    def _check_free(self, name: str) -> None:
+        if name in self.sensors:
+            raise InvalidInputError(f"there is a sensor named {name!r} in this world already")
 
     def _check_inside(self, group: Group) -> None:
         r = group.platform.radius

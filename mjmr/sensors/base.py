@@ -55,9 +55,13 @@ class Sensor(ABC):
     only the state it needs is stored; the sample itself is computed at its first read, from that
     state and from random numbers that depend on (sensor, robot, k) alone. So who reads, and how
     often, changes nothing.
+
+    Attributes:
+        stands: Whether it can stand in the world, without robots that carry it.
     """
 
     name = "sensor"
+    stands = False
 
     def __init__(self, *, rate: float, latency: float = 0.0, phase: float = 0.0):
         """Set the schedule.
@@ -68,13 +72,14 @@ class Sensor(ABC):
             phase: Instant of the first sample [s].
 
         Raises:
-            InvalidInputError: A rate that is not positive, a negative latency or phase.
+            InvalidInputError: A rate that is not positive, a latency or phase that is negative, or
+                one that is not finite.
         """
         if not (rate > 0 and math.isfinite(rate)):
             raise InvalidInputError(f"a sensor's rate must be positive; got {rate} Hz")
-        if not (latency >= 0 and phase >= 0):
+        if not (0 <= latency < math.inf and 0 <= phase < math.inf):
             raise InvalidInputError(
-                f"latency and phase must be 0 or more; got {latency} s and {phase} s"
+                f"latency and phase must be 0 or more and finite; got {latency} s and {phase} s"
             )
         self.rate, self.latency, self.phase = float(rate), float(latency), float(phase)
         self.carrier: Group | None = None
@@ -88,7 +93,16 @@ class Sensor(ABC):
             simulation: Whose time the schedule follows.
             group: The robots that carry the sensor; None for one that stands in the world.
             stream: Name of the sensor's random stream.
+
+        Raises:
+            InvalidInputError: It samples more often than physics steps.
         """
+        if self.rate * simulation.timestep > 1.0 + 1e-9:
+            raise InvalidInputError(
+                f"the {self.name} of {stream} takes {self.rate:g} samples a second, which needs "
+                f"timesteps of at most {1.0 / self.rate:g} s; they are {simulation.timestep:g} s: "
+                "set dt_max"
+            )
         self._simulation = simulation
         self._group: Any = group
         self._samples: deque[_Sample] = deque()

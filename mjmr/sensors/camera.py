@@ -39,6 +39,7 @@ class Camera(Sensor):
     """
 
     name = "camera"
+    stands = True
 
     def __init__(
         self,

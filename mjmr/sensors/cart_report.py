@@ -21,6 +21,7 @@ class CartReport(Sensor):
     """
 
     name = "cart_report"
+    stands = True
 
     def __init__(
         self,

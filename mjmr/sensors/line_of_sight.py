@@ -84,6 +84,7 @@ class LineOfSight(Sensor):
     """
 
     name = "line_of_sight"
+    stands = True
 
     def __init__(
         self,

@@ -72,7 +72,8 @@ class PanTilt(Sensor):
             phase: Instant of the first report [s].
 
         Raises:
-            InvalidInputError: Angles out of order, rates or steps that are not positive.
+            InvalidInputError: Angles out of order, rates or steps that are not positive, or a body
+                without a position.
         """
         super().__init__(rate=rate, latency=latency, phase=phase)
         for axis, limits in zip(AXES, (pan, tilt), strict=True):
@@ -85,6 +86,10 @@ class PanTilt(Sensor):
                 raise InvalidInputError(
                     f"{name} of pan and tilt must be positive and finite; got {pair}"
                 )
+        if body and position is None:
+            raise InvalidInputError(
+                f"a pan-tilt unit's place on the body {body!r} takes a position (3,)"
+            )
         self._site, self._body = site, body
         self._position = None if position is None else np.array(position, dtype=np.float64)
         if self._position is not None and not (
@@ -207,7 +212,8 @@ class PanTilt(Sensor):
 
         Raises:
             UnknownNameError: The model has no such site or body.
-            InvalidInputError: The robot's own unit does not turn that far.
+            InvalidInputError: The robot's own unit does not turn that far, stands elsewhere than
+                at the position given, or is moved by another PanTilt.
         """
         import mujoco
 
@@ -215,6 +221,10 @@ class PanTilt(Sensor):
         for prefix in prefixes:
             own = {j.name for j in spec.joints} >= {f"{prefix}{a}" for a in AXES}
             if own:
+                if self._position is not None:
+                    raise InvalidInputError(
+                        f"{prefix.rstrip('/')} has a pan-tilt unit of its own; leave position out"
+                    )
                 self._take_over(spec, prefix)
                 continue
             child = mujoco.MjSpec.from_file(str(model_path("evi_d30")))
@@ -247,6 +257,10 @@ class PanTilt(Sensor):
             if actuator is None:
                 own = [a.name.removeprefix(prefix) for a in spec.actuators]
                 raise UnknownNameError("actuator of the robot's model", axis, own)
+            if actuator.dyntype == mujoco.mjtDyn.mjDYN_INTEGRATOR:
+                raise InvalidInputError(
+                    f"the {axis} of {prefix.rstrip('/')} is moved by another PanTilt already"
+                )
             low, high = limits or joint.range
             if not joint.range[0] - 1e-9 <= low < high <= joint.range[1] + 1e-9:
                 raise InvalidInputError(

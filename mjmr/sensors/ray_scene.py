@@ -28,9 +28,9 @@ class RayScene(Stage):
 
     Two casters, checked against each other: ``compiled`` (:mod:`mjmr.sensors.ray_kernels`) knows
     boxes, spheres, ellipsoids, cylinders, capsules and planes, however they stand; ``mujoco`` is
-    MuJoCo's ``mj_multiRay``, which knows meshes and height fields too and takes several times as
-    long among many bodies. ``auto`` casts compiled rays, and MuJoCo's at such shapes alone, where
-    there are any.
+    MuJoCo's ``mj_ray``, which knows meshes and height fields too and takes a hundred times as long
+    among many bodies. ``auto`` casts compiled rays, and MuJoCo's at such shapes alone, where there
+    are any.
 
     Attributes:
         names: Of the robots, which are "owners" by their index.
@@ -132,7 +132,7 @@ class RayScene(Stage):
             self._mask[:] = 0
             self._mask[list(groups)] = 1
             for i, ways_i in enumerate(ways):
-                self._multi_ray(
+                self._mujoco_rays(
                     origins[i], ways_i, int(owners[i]), reach, ranges[i], hits[i],
                     None if slopes is None else slopes[i],
                 )  # fmt: skip
@@ -162,7 +162,7 @@ class RayScene(Stage):
         clear = clear_segments(
             starts, ends, start_owners, end_owners, tuple(self._table), *self._places
         )
-        if self._other_kinds:
+        if self._other_kinds and len(ends):
             self._mask[:] = 0
             self._mask[_REST] = 1
             for i, start in enumerate(starts):
@@ -171,14 +171,14 @@ class RayScene(Stage):
                 ranges = length.copy()
                 hits = np.full(len(ends), -1, dtype=np.int32)
                 units = way / length[:, None]
-                self._multi_ray(
+                self._mujoco_rays(
                     start, units, int(start_owners[i]), float(length.max()), ranges, hits, None
                 )
                 owner = np.where(hits < 0, -2, self._owners[hits])
                 clear[i] &= (hits < 0) | ((owner >= 0) & (owner == end_owners))
         return clear
 
-    def _multi_ray(
+    def _mujoco_rays(
         self,
         origin: Array,
         ways: Array,
@@ -190,21 +190,20 @@ class RayScene(Stage):
     ) -> None:
         """Improve ranges (b,), hits and cosines by MuJoCo's rays along unit vectors (b, 3)."""
         count, group = len(ways), self.model.geom_group
+        model, data, mask = self.model, self.data, self._mask
         own = self._own[owner] if owner >= 0 else self._own[0][:0]
         kept = group[own]
         group[own] = _OUT  # MuJoCo can leave out one body alone
-        found, geoms = np.empty(count), np.empty(count, dtype=np.int32)
-        normals = None if slopes is None else np.empty(3 * count)
-        mujoco.mj_multiRay(
-            self.model, self.data, origin, ways.ravel(), self._mask, 1, -1, geoms, found,
-            normals, count, reach,
-        )  # fmt: skip
+        found, geoms = np.empty(count), np.empty((count, 1), dtype=np.int32)
+        normals = np.empty((count, 3))
+        # one by one: mj_multiRay (MuJoCo 3.17) misses some bodies that mj_ray hits
+        for k, way in enumerate(ways):
+            found[k] = mujoco.mj_ray(model, data, origin, way, mask, 1, -1, geoms[k], normals[k])
         group[own] = kept
         better = (found >= 0.0) & (found < np.minimum(ranges, reach))
-        ranges[better], hits[better] = found[better], geoms[better]
-        if slopes is not None and normals is not None:
-            along = np.abs((normals.reshape(-1, 3) * ways).sum(axis=1))
-            slopes[better] = along[better]
+        ranges[better], hits[better] = found[better], geoms[better, 0]
+        if slopes is not None:
+            slopes[better] = np.abs((normals * ways).sum(axis=1))[better]
 
     def _check(self, method: str) -> None:
         if method not in METHODS:

@@ -114,6 +114,7 @@ def _hide(model, data, geoms, rows, bodies, offsets, radii, kept) -> None:
         and model.body_weldid[model.geom_bodyid[geoms[row]]] == model.body_weldid[base]
         and np.allclose(turns[k], np.eye(3), atol=1e-9)
     ]
+    hidden: set[int] = set()  # not to hide what hides them: two boxes may be the same
     for k, row in enumerate(rows):
         geom = geoms[row]
         if not _fixed_shape(model, base, geom):
@@ -121,7 +122,7 @@ def _hide(model, data, geoms, rows, bodies, offsets, radii, kept) -> None:
         half = np.abs(turns[k]) @ model.geom_aabb[geom, 3:]
         low, high = middles[k] - half, middles[k] + half
         for b in boxes:
-            if b == k:
+            if b == k or b in hidden:
                 continue
             size = model.geom_size[geoms[rows[b]]]
             inside_low, inside_high = middles[b] - size, middles[b] + size
@@ -129,6 +130,7 @@ def _hide(model, data, geoms, rows, bodies, offsets, radii, kept) -> None:
                 continue
             if low[2] >= inside_low[2] and high[2] <= inside_high[2]:
                 kept[row] = False
+                hidden.add(k)
                 break
             if inside_low[2] <= high[2] <= inside_high[2]:
                 high[2] = inside_low[2]
@@ -136,6 +138,7 @@ def _hide(model, data, geoms, rows, bodies, offsets, radii, kept) -> None:
                 low[2] = inside_high[2]
             else:
                 continue
+            hidden.add(k)
             middle = (low + high) / 2.0
             bodies[row], offsets[row] = base, middle
             radii[row] = np.linalg.norm(high - middle)

@@ -9,6 +9,7 @@ from mjmr.kinematics import KinematicSimulation
 from mjmr.robots import Pioneer2DX, SoccerBot
 from mjmr.sensors.line_of_sight import LineOfSight, clear_lines, line_of_sight, robot_points
 from mjmr.simulation import Simulation
+from mjmr.world import World
 from tests.mjmr.rays import crowded, hall
 from tests.mjmr.worlds import BOTH
 
@@ -116,3 +117,19 @@ def test_bad_points_are_refused():
     simulation = KinematicSimulation(world)
     with pytest.raises(InvalidInputError, match="one robot a point"):
         clear_lines([[0, 0, 0]], [[1, 0, 0]], simulation.rays, from_robots=[0, 1])
+
+
+def test_no_points_are_seen_by_anybody_even_past_a_mesh():
+    world = World.rectangle(6.0, 6.0)
+    corners = [0, 0, 0, 0.3, 0, 0, 0, 0.3, 0, 0, 0, 0.3]
+
+    def add_mesh(spec):
+        spec.add_mesh(name="wedge", uservert=corners)
+        mesh = mujoco.mjtGeom.mjGEOM_MESH
+        spec.worldbody.add_geom(type=mesh, meshname="wedge", pos=[2, 2, 0], group=0)
+
+    world.edit(add_mesh)
+    robots = world.add_group(Pioneer2DX, [[0.0, 0.0, 0.0]])
+    sight = robots.mount(LineOfSight(points=np.zeros((0, 3))))
+    for _ in Simulation(world, control_period=0.1).ticks(0.1):
+        assert sight.read().shape == (1, 0)

@@ -11,6 +11,7 @@ from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.kinematics import KinematicSimulation
 from mjmr.recording import Recording
 from mjmr.robots.pioneer2dx import Pioneer2DX
+from mjmr.robots.tamiya_txt1 import TamiyaTXT1
 from mjmr.sensors.camera import Camera
 from mjmr.sensors.pan_tilt import PanTilt
 from mjmr.simulation import Simulation
@@ -426,3 +427,18 @@ def test_two_units_on_one_robot():
     np.testing.assert_allclose(robots.rear.read()[0], [-0.5, 0.1], atol=STEPS.max())
     np.testing.assert_allclose(robots.pan_tilt.read()[0], [0.5, 0.0], atol=STEPS.max())
     assert cv2.mean(robots.camera.read()[0])[1] > 0
+
+
+def test_a_robots_own_unit_stands_where_it_stands_and_has_one_master():
+    for units, told in (
+        ([PanTilt(position=(0.0, 0.0, 0.5))], "has a pan-tilt unit of its own"),
+        ([PanTilt(), PanTilt()], "moved by another PanTilt already"),
+    ):
+        world = World.rectangle(4.0, 4.0)
+        truck = world.add_group(TamiyaTXT1, [[0.0, 0.0, 0.0]])
+        for k, unit in enumerate(units):
+            truck.mount(unit, f"unit{k}")
+        with pytest.raises(InvalidInputError, match=told):
+            Simulation(world)
+    with pytest.raises(InvalidInputError, match="takes a position"):
+        PanTilt(body="base")

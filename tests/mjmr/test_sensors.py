@@ -149,3 +149,24 @@ def test_reports_are_read_only_and_need_a_simulation():
 def test_bad_sensor_options_are_refused(options):
     with pytest.raises(InvalidInputError):
         Localizer(**options)
+
+
+@pytest.mark.parametrize("kind", BOTH)
+def test_a_sensor_faster_than_the_physics_is_refused(kind):
+    """It would take fewer samples than it says; as often as the physics steps is possible."""
+    for rate in (240.0, 250.0):
+        world, robots = soccer([[0.0, 0.0, 0.0]])
+        robots.mount(Localizer(rate=rate))
+        if rate > 240.0:
+            with pytest.raises(InvalidInputError, match="timesteps of at most 0.004 s"):
+                kind(world)
+        else:
+            for _ in kind(world, dt_max=1 / 240).ticks(0.5):
+                pass
+            assert robots.localizer.sampled_at == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("options", [{"latency": np.inf}, {"phase": np.inf}, {"phase": np.nan}])
+def test_a_schedule_that_never_comes_is_refused(options):
+    with pytest.raises(InvalidInputError, match="finite"):
+        Localizer(**options)

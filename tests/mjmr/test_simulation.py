@@ -9,6 +9,17 @@ from mjmr.faults import Fault
 from mjmr.geometry import rotate
 from mjmr.kinematics import KinematicSimulation
 from mjmr.robots.soccer_bot import SoccerBot
+from mjmr.sensors import (
+    IMU,
+    Bumper,
+    Camera,
+    Compass,
+    Lidar,
+    LineOfSight,
+    Localizer,
+    PanTilt,
+    WheelEncoders,
+)
 from mjmr.simulation import Simulation
 from mjmr.world import World
 from tests.mjmr.worlds import BOTH, drive, ramp, soccer
@@ -271,6 +282,8 @@ def test_the_timestep_divides_the_control_period():
     simulation = Simulation(world, control_period=1 / 60, dt_max=0.005)
     assert simulation.substeps == 4
     assert simulation.model.opt.timestep == pytest.approx(1 / 240)
+    world, robots = soccer(POSES)
+    robots.mount(Localizer(rate=10.0))
     assert KinematicSimulation(world, control_period=0.1, dt_max=0.1).substeps == 1
 
 
@@ -443,13 +456,11 @@ def test_a_world_serves_one_simulation_at_a_time():
 
 
 def test_a_sensor_has_one_group():
-    from mjmr.sensors.localizer import Localizer
-
     world, robots = soccer([[-1.0, 0.0, 0.0]])
     others = world.add_group(SoccerBot, [[1.0, 0.0, 0.0]])
     eye = Localizer()
     robots.mount(eye)
-    with pytest.raises(InvalidInputError, match="another group"):
+    with pytest.raises(InvalidInputError, match="on group .soccer_bot. already"):
         others.mount(eye)
 
 
@@ -471,3 +482,69 @@ def test_observers_see_the_start_once():
         for _ in simulation.ticks(seconds):
             pass
     np.testing.assert_allclose(seen, np.arange(13) / 60)
+
+
+@pytest.mark.parametrize("kind", BOTH)
+def test_a_snapshot_from_before_the_start_has_the_first_samples_again(kind):
+    world, robots = soccer([[0.0, 0.0, 0.0]])
+    simulation = kind(world, seed=1)
+    snapshot = simulation.snapshot()
+    runs = []
+    for _ in range(2):
+        runs.append([robots.localizer.read().copy() for _ in simulation.ticks(0.1)])
+        simulation.restore(snapshot)
+    assert np.isfinite(runs[0][0]).all()
+    np.testing.assert_array_equal(runs[0], runs[1])
+
+
+def test_a_mount_that_was_refused_leaves_nothing_behind():
+    world, robots = soccer([[0.0, 0.0, 0.0]])
+    others = world.add_group(SoccerBot, [[1.0, 0.0, 0.0]])
+    robots.mount(Compass())
+    spare = Compass()
+    with pytest.raises(InvalidInputError, match="already"):
+        robots.mount(spare)
+    others.mount(spare)
+    with pytest.raises(InvalidInputError, match="mounted on group 'soccer_bot_1_' already"):
+        others.mount(spare, "twin")
+    for name in ("n", "start", "drive", "command", "sensors"):
+        with pytest.raises(InvalidInputError, match="attribute that every group has"):
+            robots.mount(Compass(), name)
+    assert list(robots.sensors) == ["localizer", "compass"]
+
+
+def test_robots_have_names_that_are_nobody_elses():
+    """Shapes are told apart by them: a robot called box0 would be taken for the box."""
+    world, _ = soccer([[-2.0 + 0.35 * k, 1.0, 0.0] for k in range(11)], name="r")
+    with pytest.raises(InvalidInputError, match="robots named r10 already"):
+        world.add_group(SoccerBot, [[0.0, 0.0, 0.0]], name="r1")
+    for name in ("box", "ball1", "cart", "a/b", ""):
+        with pytest.raises(InvalidInputError, match="a group's name"):
+            world.add_group(SoccerBot, [[0.0, 0.0, 0.0]], name=name)
+    world.add_group(SoccerBot, [[0.0, 0.0, 0.0]], name="boxer")
+    assert [group.name for group in world.groups] == ["r", "boxer"]
+
+
+def test_what_stands_in_the_world_needs_no_robot():
+    world, robots = soccer([[0.0, 0.0, 0.0]])
+    for sensor in (Compass(), Localizer(), Lidar(), IMU(), Bumper(), WheelEncoders(), PanTilt()):
+        with pytest.raises(InvalidInputError, match="is mounted on robots"):
+            world.mount(sensor)
+    with pytest.raises(InvalidInputError, match="is mounted already"):
+        world.mount(robots.mount(LineOfSight()))
+    above, middle = (0.0, 0.0, 2.0), (0.0, 0.0, 0.0)
+    world.add_camera(Camera(), position=above, look_at=middle)
+    spare = Camera()
+    with pytest.raises(InvalidInputError, match="named 'camera'"):
+        world.add_camera(spare, position=above, look_at=middle)
+    world.add_camera(spare, position=above, look_at=middle, name="spare")
+    assert list(world.sensors) == ["camera", "spare"]
+
+
+def test_starts_that_are_refused_change_nothing():
+    world, robots = soccer(POSES)
+    others = world.add_group(SoccerBot, [[1.5, 0.0, 0.0]], name="others")
+    with pytest.raises(InvalidInputError, match="outside the walls"):
+        world.start_at({"soccer_bot": np.array(POSES) + 0.1, "others": [[9.0, 0.0, 0.0]]})
+    np.testing.assert_array_equal(robots.start, POSES)
+    np.testing.assert_array_equal(others.start, [[1.5, 0.0, 0.0]])
