@@ -96,9 +96,13 @@ class Group:
         """Start elsewhere in the next simulation; :meth:`mjmr.world.World.start_at` calls this.
 
         Raises:
-            InvalidInputError: Poses of another shape or not finite.
+            InvalidInputError: Poses of another shape or not finite, or a rig that cannot be moved.
         """
         start = _start(poses)
+        if self.platform.anchored:
+            raise InvalidInputError(
+                f"{self.name}: a rig stands where its world was built; build another world"
+            )
         if start.shape != self.start.shape:
             raise InvalidInputError(
                 f"{self.name}: start poses must have shape ({self.n}, 3); got {start.shape}"

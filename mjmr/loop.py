@@ -108,8 +108,11 @@ class TickedSimulation(ABC):
     def __init__(
         self, world: "World", *, seed: int, control_period: float, dt_max: float, substeps: int = 0
     ):
-        if not (control_period > 0 and dt_max > 0):
-            raise InvalidInputError("control_period and dt_max must be positive")
+        if not (0 < control_period < math.inf and 0 < dt_max < math.inf):
+            raise InvalidInputError(
+                f"control_period and dt_max must be positive and finite; got {control_period} and "
+                f"{dt_max} s"
+            )
         if not world.groups:
             raise InvalidInputError("the world has no robots; add a group first")
         self.world = world

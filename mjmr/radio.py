@@ -190,6 +190,9 @@ class Radio:
         columns = rows.shape[1] if rows.ndim == 2 else -1
         if rows.ndim != 2 or len(rows) != n:
             raise InvalidInputError(f"values must have shape ({n}, c); got {rows.shape}")
+        who = np.ones(n, dtype=bool) if senders is None else np.array(senders)
+        if who.shape != (n,) or who.dtype != bool:
+            raise InvalidInputError(f"senders are {n} flags; got {who.dtype} of shape {who.shape}")
         if self._latest is None:
             self._latest = np.full((n, n, columns), np.nan), np.full((n, n), np.nan)
         if columns != self._latest[0].shape[2]:
@@ -197,9 +200,6 @@ class Radio:
                 f"values must have the {self._latest[0].shape[2]} columns they had before; "
                 f"got {columns}"
             )
-        who = np.ones(n, dtype=bool) if senders is None else np.array(senders)
-        if who.shape != (n,) or who.dtype != bool:
-            raise InvalidInputError(f"senders are {n} flags; got {who.dtype} of shape {who.shape}")
         step, time = self._now()
         silent = self._faulty("silent", time)
         numbers = self._numbers.copy()

@@ -150,6 +150,8 @@ class World:
         self.bounds = _rectangle(bounds, "bounds")
         self.field = None if field is None else _rectangle(field, "field")
         self.wall_height = float(wall_height)
+        if not 0 < self.wall_height < np.inf:
+            raise InvalidInputError(f"wall_height must be positive and finite; got {wall_height} m")
         if floor not in FLOORS:
             raise UnknownNameError("floor", floor, FLOORS)
         if lighting not in LIGHTINGS:

@@ -55,7 +55,7 @@ class Lidar(Sensor):
         noise: float = 0.0,
         proportional_noise: float = 0.0,
         drop_out: float = 0.0,
-        at: str = "",
+        site: str = "",
         position: ArrayLike | None = None,
         yaw: float = 0.0,
         housing: ArrayLike | None = None,
@@ -75,7 +75,7 @@ class Lidar(Sensor):
             noise: Standard deviation of a range [m], Gaussian.
             proportional_noise: The same as a share of the range; the larger of both counts.
             drop_out: Probability that a beam is lost.
-            at: Site of the robot's model where it is mounted, x forward; default: ``lidar``, unless
+            site: Of the robot's model, where it is mounted, x forward; default: ``lidar``, unless
                 a position is given.
             position: Instead of a site: (3,) [m] in the frame of the robot's base.
             yaw: Of the middle beam there [rad].
@@ -105,7 +105,7 @@ class Lidar(Sensor):
         )
         if method not in METHODS:
             raise UnknownNameError("method of casting rays", method, METHODS)
-        if at and position is not None:
+        if site and position is not None:
             raise InvalidInputError("give a lidar either the name of a site or a position")
         self._place = None if position is None else np.array(position, dtype=np.float64)
         if self._place is not None and not (
@@ -130,7 +130,7 @@ class Lidar(Sensor):
         self.field_of_view, self.method = float(field_of_view), method
         self.angles = fan_angles(int(beams), self.field_of_view)
         self.angles.setflags(write=False)
-        self._at, self._yaw = at or ("" if position is not None else "lidar"), float(yaw)
+        self._at, self._yaw = site or ("" if position is not None else "lidar"), float(yaw)
 
     @classmethod
     def lms200(cls, *, beams: int = 181, **options: Any) -> "Lidar":

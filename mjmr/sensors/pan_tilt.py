@@ -77,9 +77,14 @@ class PanTilt(Sensor):
         """
         super().__init__(rate=rate, latency=latency, phase=phase)
         for axis, limits in zip(AXES, (pan, tilt), strict=True):
-            if limits is not None and not -2 * math.pi <= limits[0] < limits[1] <= 2 * math.pi:
+            if limits is not None and not (
+                len(limits) == 2
+                and -2 * math.pi <= limits[0] <= 0 <= limits[1] <= 2 * math.pi
+                and limits[0] < limits[1]
+            ):
                 raise InvalidInputError(
-                    f"{axis} needs a least and a larger angle within a turn [rad]; got {limits}"
+                    f"{axis} needs a least and a larger angle within a turn, with 0, where it "
+                    f"starts, between them [rad]; got {limits}"
                 )
         for name, pair in (("rates", rates), ("steps", steps)):
             if len(pair) != 2 or not all(0 < value < math.inf for value in pair):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from experiments.proving_ground import aibo, course, noise, study
+from experiments.proving_ground import aibo_trials, course, noise, study
 from experiments.proving_ground.trial import trial
 from mjmr.claims import Bound
 from mjmr.conditions import Grid
@@ -92,9 +92,7 @@ def test_the_truck_rolls_over_at_a_speed_it_drove_not_only_one_it_was_asked_for(
 
 def test_a_floor_is_as_it_is_unless_a_friction_is_named():
     def sliding(friction):
-        world = course.hall(4.0)
-        aibo.floor_friction(world, friction)
-        return float(world.spec().geom("floor").friction[0])
+        return float(aibo_trials.world_with(friction).spec().geom("floor").friction[0])
 
     assert sliding(0.0) == float(course.hall(4.0).spec().geom("floor").friction[0]) > 0.5
     assert sliding(0.6) == 0.6

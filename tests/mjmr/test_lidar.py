@@ -358,7 +358,7 @@ def test_ray_sensors_survive_halton_noise_on_all_actuators():
     pioneers.mount(Lidar.lms200())
     pioneers.mount(Sonar(rate=60.0))
     pioneers.mount(LineOfSight())
-    bots.mount(Lidar.urg04lx(at="top", latency=0.0))
+    bots.mount(Lidar.urg04lx(site="top", latency=0.0))
     simulation = Simulation(world, control_period=0.25)
     data = simulation.data
     noise = iter(qmc.Halton(simulation.model.nu, rng=3).random(400))
@@ -413,7 +413,7 @@ def test_presets_have_the_numbers_of_their_sources():
         {"latency": -0.1},
         {"position": (1.0, 2.0)},
         {"position": (math.nan, 0.0, 0.0)},
-        {"position": (0.0, 0.0, 0.1), "at": "lidar"},
+        {"position": (0.0, 0.0, 0.1), "site": "lidar"},
         {"yaw": 1.0},
         {"housing": (0.1, 0.1)},
         {"housing": (0.1, 0.0, 0.1)},
@@ -429,7 +429,7 @@ def test_bad_options_are_refused_in_one_sentence(options):
 def test_bad_places_and_materials_are_refused():
     world = hall()
     robots = world.add_group(Pioneer2DX, [[0, 0, 0]])
-    robots.mount(Lidar(at="lidarr"))
+    robots.mount(Lidar(site="lidarr"))
     with pytest.raises(UnknownNameError, match="valid: lidar, "):
         Simulation(world)
     with pytest.raises(InvalidInputError, match="mounted on robots"):
