@@ -14,6 +14,7 @@ Array = NDArray[np.float64]
 SETS = ("forward", "backward", "sideways", "turning")
 _STAND = 4  # column of the weights, after those of SETS
 _SAMPLES = 256  # of a period when a table is checked
+_STANDING = np.eye(len(SETS) + 1)[_STAND]
 # of the shares of a command: with 2 some mixtures of full commands are out of reach
 _NORM = 1.5
 
@@ -105,7 +106,9 @@ class Trot:
 
     def shares(self, command: Array) -> Array:
         """Shares of ``SETS`` (n, 4) in commands (n, 3)."""
-        parts = np.column_stack([command[:, 0], -command[:, 0], np.abs(command[:, 1:])])
+        parts = np.empty((len(command), 4))
+        parts[:, 0], parts[:, 1] = command[:, 0], -command[:, 0]
+        parts[:, 2:] = np.abs(command[:, 1:])
         return np.maximum(parts, 0.0) / self.full
 
     def table_rates(self, command: ArrayLike) -> Rates:
@@ -184,7 +187,7 @@ class BoundTrot:
         moving = size > trot.dead
         wanted = np.zeros_like(self._weights)
         wanted[:, :_STAND] = shares / np.maximum(shares.sum(axis=1, keepdims=True), 1e-300)
-        wanted[~moving] = np.eye(len(SETS) + 1)[_STAND]
+        wanted[~moving] = _STANDING
         target = command * (scale * moving)[:, None]
         self._twist += np.clip(target - self._twist, -self._step, self._step)
         self._weights = _towards(self._weights, wanted, trot.frame / trot.ramp)
@@ -200,7 +203,7 @@ class BoundTrot:
         """Let the robots of a mask (n,) stand, as at the start."""
         self._phase[mask] = 0.0
         self._twist[mask] = 0.0
-        self._weights[mask] = np.eye(len(SETS) + 1)[_STAND]
+        self._weights[mask] = _STANDING
 
     def state(self) -> Any:
         """All that later angles depend on, and the counts; copies."""

@@ -1,5 +1,6 @@
 """Parameters of one gait, and the loci its feet follow: a trot of "constant swing speed"."""
 
+import math
 from dataclasses import astuple, dataclass
 
 import numpy as np
@@ -7,6 +8,7 @@ from numpy.typing import NDArray
 
 from controllers.legged.leg import LegGeometry
 from mjmr.errors import InvalidInputError
+from mjmr.jit import njit
 
 Array = NDArray[np.float64]
 Pair = tuple[float, float]
@@ -67,18 +69,34 @@ def feet(leg: LegGeometry, rows: Array, phase: Array, twist: Array) -> Array:
         rows: Parameters (n, 12), each :meth:`GaitSet.row` or a mixture.
         phase: Of the pair fore left + hind right (n,), in periods; 0 where it touches down.
         twist: Commanded (n, 3): forward, left [m/s], anticlockwise [rad/s].
+
+    Any of them may have a single row, which then serves all.
     """
-    period, gain = rows[:, :1], rows[:, 11:]
-    # (n, 5, 4): duty, height, lift, ahead and out of each leg
-    pairs = rows[:, 1:11].reshape(-1, 5, 2)[:, :, [0, 0, 1, 1]]
-    duty, height, lift, ahead, out = np.moveaxis(pairs, 1, 0)
-    x, y = leg.hips[:, 0] + ahead, leg.hips[:, 1] + leg.signs[:, 1] * out
-    stance = period * duty * gain
-    forward, left, turn = np.moveaxis(twist[:, :, None], 1, 0)
-    along, across = (forward - turn * y) * stance, (left + turn * x) * stance
-    local = np.remainder(phase[:, None] + PHASES, 1.0)
-    swing = (local - duty) / (1.0 - duty)
-    aloft = swing > 0.0
-    share = np.where(aloft, swing - 0.5, 0.5 - local / duty)
-    rise = np.where(aloft, lift * np.sin(np.pi * swing), 0.0)
-    return np.stack([x + along * share, y + across * share, rise - height], axis=-1)
+    n = max(len(rows), len(phase), len(twist))
+    if not len(rows) == len(phase) == len(twist):
+        rows, twist = np.tile(rows, (n // len(rows), 1)), np.tile(twist, (n // len(twist), 1))
+        phase = np.tile(phase, n // len(phase))
+    return _feet(leg.hips, leg.signs, rows, phase, twist)
+
+
+@njit
+def _feet(hips, signs, rows, phase, twist):
+    centres = np.empty((rows.shape[0], 4, 3))
+    for i in range(rows.shape[0]):
+        forward, left, turn = twist[i, 0], twist[i, 1], twist[i, 2]
+        for leg in range(4):
+            pair = leg // 2
+            duty, height, lift = rows[i, 1 + pair], rows[i, 3 + pair], rows[i, 5 + pair]
+            x = hips[leg, 0] + rows[i, 7 + pair]
+            y = hips[leg, 1] + signs[leg, 1] * rows[i, 9 + pair]
+            stance = rows[i, 0] * duty * rows[i, 11]
+            local = (phase[i] + PHASES[leg]) % 1.0
+            swing = (local - duty) / (1.0 - duty)
+            if swing > 0.0:
+                share, rise = swing - 0.5, lift * math.sin(math.pi * swing)
+            else:
+                share, rise = 0.5 - local / duty, 0.0
+            centres[i, leg, 0] = x + (forward - turn * y) * stance * share
+            centres[i, leg, 1] = y + (left + turn * x) * stance * share
+            centres[i, leg, 2] = rise - height
+    return centres

@@ -1,11 +1,14 @@
 """Closed-form kinematics of a four-legged robot's legs: rotator, elevator, knee."""
 
+import functools
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError
+from mjmr.jit import njit
 
 Array = NDArray[np.float64]
 LEGS = ("fl", "fr", "hl", "hr")
@@ -42,7 +45,7 @@ class LegGeometry:
     foot_offset: float
     limits: Array
 
-    @property
+    @functools.cached_property
     def signs(self) -> Array:
         """Of forwards, outwards and up (4, 3): +-1, what mirrors each leg to the fore left one."""
         return np.column_stack([np.sign(self.hips[:, :2]), np.ones(4)])
@@ -75,27 +78,12 @@ class LegGeometry:
         Raises:
             InvalidInputError: Another shape, or a number that is not finite.
         """
-        x, y, z = np.moveaxis((_legs(feet, "feet") - self.hips) * self.signs, -1, 0)
-        # in the plane of thigh and shank only the knee changes the distance from the hip
-        flat = x * x + y * y + z * z - self.foot_offset**2
-        upper = np.hypot(self.thigh, self.knee_offset)
-        bend = (flat - upper**2 - self.shank**2) / (2.0 * upper * self.shank)
-        reached = np.abs(bend) <= 1.0 + _SLACK
-        straight = np.arctan2(self.knee_offset, self.thigh) + self.shank_angle
-        knee = straight + np.arccos(bend.clip(-1.0, 1.0))
-        ahead = self.knee_offset + self.shank * np.sin(knee - self.shank_angle)
-        down = self.thigh + self.shank * np.cos(knee - self.shank_angle)
-        # the rotator leaves the sideways distance to the elevator
-        side = y / np.hypot(self.foot_offset, down)
-        reached &= np.abs(side) <= 1.0 + _SLACK
-        elevator = np.arctan2(down, self.foot_offset) - np.arccos(side.clip(-1.0, 1.0))
-        depth = self.foot_offset * np.sin(elevator) - down * np.cos(elevator)
-        rotator = np.arctan2(z, x) - np.arctan2(depth, ahead)
-        rotator = np.remainder(rotator + np.pi, 2.0 * np.pi) - np.pi
-        angle = np.stack([rotator, elevator, knee], axis=-1)
-        low, high = self.limits[..., 0], self.limits[..., 1]
-        within = (angle >= low - _SLACK) & (angle <= high + _SLACK)
-        return angle.clip(low, high), reached & within.all(axis=-1)
+        points = _legs(feet, "feet")
+        angles, reached = _solve(
+            np.ascontiguousarray(points).reshape(-1, 4, 3), self.hips, self.signs, self.thigh,
+            self.knee_offset, self.shank, self.shank_angle, self.foot_offset, self.limits,
+        )  # fmt: skip
+        return angles.reshape(points.shape), reached.reshape(points.shape[:-1])
 
     def angles(self, feet: ArrayLike) -> Array:
         """Joint angles (..., 4, 3) [rad] that put the feet at (..., 4, 3) [m], body frame.
@@ -116,6 +104,40 @@ class LegGeometry:
                 f"its joints' limits{more}; body frame, x forward, y left, z up from the hips"
             )
         return angle
+
+
+@njit
+def _solve(points, hips, signs, thigh, knee_offset, shank, shank_angle, foot_offset, limits):
+    """Angles (m, 4, 3) and mask (m, 4) of :meth:`LegGeometry.solve` for points (m, 4, 3)."""
+    angles = np.empty(points.shape)
+    reached = np.empty(points.shape[:2], dtype=np.bool_)
+    upper = math.hypot(thigh, knee_offset)
+    for i in range(points.shape[0]):
+        for leg in range(4):
+            x = (points[i, leg, 0] - hips[leg, 0]) * signs[leg, 0]
+            y = (points[i, leg, 1] - hips[leg, 1]) * signs[leg, 1]
+            z = (points[i, leg, 2] - hips[leg, 2]) * signs[leg, 2]
+            # in the plane of thigh and shank only the knee changes the distance from the hip
+            flat = x * x + y * y + z * z - foot_offset**2
+            bend = (flat - upper**2 - shank[leg] ** 2) / (2.0 * upper * shank[leg])
+            fits = abs(bend) <= 1.0 + _SLACK
+            straight = math.atan2(knee_offset, thigh) + shank_angle[leg]
+            knee = straight + math.acos(min(max(bend, -1.0), 1.0))
+            ahead = knee_offset + shank[leg] * math.sin(knee - shank_angle[leg])
+            down = thigh + shank[leg] * math.cos(knee - shank_angle[leg])
+            # the rotator leaves the sideways distance to the elevator
+            side = y / math.hypot(foot_offset, down)
+            fits = fits and abs(side) <= 1.0 + _SLACK
+            elevator = math.atan2(down, foot_offset) - math.acos(min(max(side, -1.0), 1.0))
+            depth = foot_offset * math.sin(elevator) - down * math.cos(elevator)
+            rotator = math.atan2(z, x) - math.atan2(depth, ahead)
+            rotator = (rotator + math.pi) % (2.0 * math.pi) - math.pi
+            for k, angle in enumerate((rotator, elevator, knee)):
+                low, high = limits[leg, k, 0], limits[leg, k, 1]
+                fits = fits and low - _SLACK <= angle <= high + _SLACK
+                angles[i, leg, k] = min(max(angle, low), high)
+            reached[i, leg] = fits
+    return angles, reached
 
 
 def _legs(values: ArrayLike, what: str) -> Array:

@@ -169,10 +169,11 @@ class BoundAiboMotion:
         self._down = np.where(upright, 0, self._down + 1)
         self._finish_actions()
         self._begin_actions(np.rint(command[:, 6]).astype(np.int64), upright)
-        up, given_up = self._get_up.decide(
-            self.posture, self._posture.up[:, 1] > 0.0, self._targets
-        )
-        self.status = np.where(up, WALKING, np.where(given_up, GIVEN_UP, self.status))
+        if (self.status == GETTING_UP).any():
+            up, given_up = self._get_up.decide(
+                self.posture, self._posture.up[:, 1] > 0.0, self._targets
+            )
+            self.status = np.where(up, WALKING, np.where(given_up, GIVEN_UP, self.status))
         whole = self.status == GETTING_UP
         whole |= self.status == KICKING
         # fallen robots stretch their legs as if they stood, and wait
@@ -187,6 +188,8 @@ class BoundAiboMotion:
         return targets
 
     def _finish_actions(self) -> None:
+        if not (self.status == KICKING).any():
+            return
         kicked = (self.status == KICKING) & self._player.ended
         self._player.stop(kicked)
         self.status = np.where(kicked, WALKING, self.status)

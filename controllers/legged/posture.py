@@ -1,9 +1,12 @@
 """How a robot stands or lies, told by its accelerometer alone."""
 
+import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from mjmr.jit import njit
 
 Array = NDArray[np.float64]
 STANDING, FRONT, LEFT, RIGHT, BACK = range(5)
@@ -20,11 +23,23 @@ def classify(up: Array) -> NDArray[np.int64]:
     Args:
         up: Body frame (n, 3), of any length: what an accelerometer at rest reads.
     """
-    unit = up / np.maximum(np.linalg.norm(up, axis=1, keepdims=True), 1e-9)
-    side, top = unit[:, 1], unit[:, 2]
-    aside = (np.abs(top) < 0.6) & (np.abs(side) > 0.5)
-    lies = [top > 0.85, aside & (side < 0), aside, top < -0.5]
-    return np.select(lies, [STANDING, LEFT, RIGHT, BACK], FRONT)
+    return _classify(up)
+
+
+@njit
+def _classify(up):
+    found = np.full(up.shape[0], FRONT)
+    for i in range(up.shape[0]):
+        x, y, z = up[i]
+        length = max(math.sqrt(x * x + y * y + z * z), 1e-9)
+        side, top = y / length, z / length
+        if top > 0.85:
+            found[i] = STANDING
+        elif abs(top) < 0.6 and abs(side) > 0.5:
+            found[i] = LEFT if side < 0.0 else RIGHT
+        elif top < -0.5:
+            found[i] = BACK
+    return found
 
 
 class Posture:
