@@ -22,13 +22,13 @@ SHOWN = {
     "koala": {
         "koala-scrub": "turn by encoders / true turn",
         "koala-straight": "5 m straight, sideways",
-        "koala-odometry-elsewhere": "odometry, 5 turns, any speed",
-        "koala-odometry-uneven": "odometry, 5 turns, uneven grip",
+        "koala-odometry-even-elsewhere": "odometry, 5 turns, any speed",
+        "koala-odometry-elsewhere": "the same, uneven grip",
         "koala-square": "2 m square, dead reckoning off",
     },
     "tamiya_txt1": {
         "txt1-circle": "radius against the bicycle model",
-        "txt1-turn-bound": "largest yaw rate at 0.3 rad/s",
+        "txt1-turn-bound-open": "largest yaw rate at 0.3 rad/s",
         "txt1-roll-over-driven": "drives at full lock until it rolls over",
     },
     "aibo_ers7": {

@@ -83,7 +83,19 @@ def lidar_noise(condition: Mapping[str, Any], seed: int) -> Metrics:
 
 
 def sonar(condition: Mapping[str, Any], seed: int) -> Metrics:
-    """Where a screen that moves in from the side is first heard, against half the cone's width."""
+    """Where a screen that moves in from the side is first heard, against half the cone's width.
+
+    The screen is 0.1 m thick: its far edge, which is heard first, is nearer to the axis.
+    """
+    return _first_heard(0.1)
+
+
+def sonar_thin(condition: Mapping[str, Any], seed: int) -> Metrics:
+    """The same with a screen of 2 mm."""
+    return _first_heard(0.002)
+
+
+def _first_heard(thickness: float) -> Metrics:
     errors = []
     for side in (-1.0, 1.0):
         heard, silent, offset = 0.0, np.radians(30.0), 0.0
@@ -93,7 +105,7 @@ def sonar(condition: Mapping[str, Any], seed: int) -> Metrics:
             world = World(bounds=[-6, -6, 6, 6], wall_height=0.5)
             robots = world.add_group(Pioneer2DX, [[0.0, 0.0, 0.0]])
             x, y = 2.0, 2.0 * np.tan(bearing)
-            world.add_box(x, side * (y + 1.0), 0.002, 2.0, height=1.0)
+            world.add_box(x + thickness / 2, side * (y + 1.0), thickness, 2.0, height=1.0)
             hearing = robots.mount(
                 Sonar(sites=("lidar",), max_range=3.0, max_incidence=np.pi / 2, rays=121)
             )
@@ -111,13 +123,25 @@ def sonar(condition: Mapping[str, Any], seed: int) -> Metrics:
 
 
 def camera(condition: Mapping[str, Any], seed: int) -> Metrics:
-    """Small balls where OpenCV finds them and where they project; depth against rays."""
+    """Small balls where OpenCV finds them and where they project; depth against rays.
+
+    Some of the balls may lie outside the picture.
+    """
+    return _balls(seed, (-1.5, 2.0))
+
+
+def camera_in_view(condition: Mapping[str, Any], seed: int) -> Metrics:
+    """The same with balls that all lie in the picture."""
+    return _balls(seed, (0.5, 3.0))
+
+
+def _balls(seed: int, away: tuple[float, float]) -> Metrics:
     import mujoco
 
     rng = Streams(seed).generator("balls")
     world = hall(4.0)
     robots = world.add_group(Pioneer2DX, [[-3.0, 0.0, 0.0]])
-    places = np.column_stack([rng.uniform(0.5, 3.0, 8), np.linspace(-1.5, 1.5, 8)])
+    places = np.column_stack([rng.uniform(*away, 8), np.linspace(-1.5, 1.5, 8)])
     for x, y in places:
         world.add_golf_ball(x, y)
     kind = {"position": (0.0, 0.0, 0.35), "look_at": (3.0, 0.0, 0.0), "fovy": 0.9}
@@ -136,7 +160,7 @@ def camera(condition: Mapping[str, Any], seed: int) -> Metrics:
         pinhole = eye.calibration
         told = pinhole.project(inside)
         found = _orange(image)
-        error = [float(np.hypot(*(found - t).T).min()) for t in told] if len(found) else [np.inf]
+        error = [float(np.hypot(*(found - t).T).min()) for t in told]
         ray_error = _depth_error(simulation, deep.calibration, depth, frame, body.xpos)
     return {"pixel_error": max(error), "found": len(found), "depth_error_m": ray_error}
 
@@ -236,7 +260,9 @@ TESTS = {
     "lidar": lidar,
     "lidar-noise": lidar_noise,
     "sonar": sonar,
+    "sonar-thin": sonar_thin,
     "camera": camera,
+    "camera-in-view": camera_in_view,
     "schedule": schedule,
 }
 
@@ -257,8 +283,15 @@ def claims() -> list[Claim]:
         sheet(NAME, "sonar", "sonar-cone", "a sonar hears what is in its cone",
               "where the edge of a screen is first heard - half the cone, both sides",
               Bound("<=", 1.0), "edge_error_deg", unit="deg", sizes=LARGE),
+        sheet(NAME, "sonar-thin", "sonar-cone-thin", "a sonar hears what is in its cone",
+              "where the edge of a thin screen is first heard - half the cone, both sides",
+              Bound("<=", 1.0), "edge_error_deg", unit="deg", sizes=LARGE),
+        sheet(NAME, "camera-in-view", "camera-in-view", "a camera shows things where they project",
+              "8 balls, all in the picture, projected centre to the centre OpenCV finds, largest",
+              Bound("<=", 1.0), "pixel_error", unit="px"),
         sheet(NAME, "camera", "camera-projection", "a camera shows things where they project",
-              "8 balls, projected centre to the centre OpenCV finds, largest", Bound("<=", 1.0),
+              "8 balls, some outside the picture, projected centre to the centre OpenCV finds, "
+              "largest", Bound("<=", 1.0),
               "pixel_error", unit="px"),
         sheet(NAME, "camera", "camera-depth", "depth images are distances",
               "depth against rays, every fifth pixel, largest", Bound("<=", 0.01),

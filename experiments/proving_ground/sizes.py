@@ -17,7 +17,7 @@ def _wheels(dt: tuple[float, ...], turns: tuple[float, ...], speeds: tuple[float
         Grid(platform="pioneer2dx", test=tests, dt_ms=dt, seeds=1),
         Grid(platform="soccer_bot", test="dash", variant=("planar", "omni"), dt_ms=dt, seeds=1),
         Grid(platform="koala", test="turn", turn=turns, dt_ms=dt, seeds=1),
-        Grid(platform="koala", test="odometry", turn=1.0, seeds=1),
+        Grid(platform="koala", test="odometry-even", turn=1.0, seeds=1),
         Grid(platform="koala", test="square", variant=("left", "right"), speed=speeds, seeds=1),
         Grid(
             platform="tamiya_txt1",
@@ -29,7 +29,7 @@ def _wheels(dt: tuple[float, ...], turns: tuple[float, ...], speeds: tuple[float
         ),
         Grid(
             platform="tamiya_txt1",
-            test="unicycle",
+            test=("unicycle", "unicycle-open"),
             variant=("plain", "changing"),
             dt_ms=dt,
             seeds=1,
@@ -43,10 +43,15 @@ def _large(seeds: int, worlds: int) -> tuple[Grid, ...]:
         *_wheels(_DT, (0.3, 0.5, 0.8, 1.0, 2.0), (0.2, 0.4)),
         Grid(platform="pioneer2dx", **crowd, seeds=worlds),
         Grid(platform="koala", test="straight", dt_ms=_DT, seeds=8),
-        Grid(platform="koala", test="odometry", turn=(0.4, 0.8, 1.6, 2.0), seeds=1),
-        Grid(platform="koala", test="odometry", turn=(0.4, 1.0, 2.0), friction=(0.5, 1.1), seeds=1),
-        Grid(platform="koala", test="odometry", turn=0.8, variant="uneven", seeds=seeds),
-        Grid(platform="tamiya_txt1", test="roll-over", dt_ms=_DT, seeds=1),
+        *(
+            Grid(platform="koala", test=test, turn=(0.4, 0.8, 1.6, 2.0), seeds=n)
+            for test, n in (("odometry", seeds), ("odometry-even", 1))
+        ),
+        *(
+            Grid(platform="koala", test=test, turn=(0.4, 1.0, 2.0), friction=(0.5, 1.1), seeds=n)
+            for test, n in (("odometry", seeds), ("odometry-even", 1))
+        ),
+        Grid(platform="tamiya_txt1", test=("roll-over", "roll-over-steps"), dt_ms=_DT, seeds=1),
         Grid(
             platform="nims",
             test="move",
@@ -66,8 +71,8 @@ def _large(seeds: int, worlds: int) -> tuple[Grid, ...]:
         Grid(**_AIBO, test="get-up", variant=("front", "left", "right", "back"), seeds=seeds),
         Grid(**_AIBO, test="kick", variant=("forward", "left", "right"), seeds=seeds),
         Grid(platform="aibo_ers7", test="roll", dt_ms=(2.0, 4.0), seeds=1),
-        Grid(platform="sensors", test=("lidar", "camera"), seeds=5),
-        Grid(platform="sensors", test=("lidar-noise", "sonar", "schedule"), seeds=1),
+        Grid(platform="sensors", test=("lidar", "camera", "camera-in-view"), seeds=5),
+        Grid(platform="sensors", test=("lidar-noise", "sonar", "sonar-thin", "schedule"), seeds=1),
         Grid(platform=_ROBOTS, test="noise", seeds=100),
     )
 
@@ -93,7 +98,10 @@ QUICK = Size(
             platform="aibo_ers7", test="kick", variant=("forward", "left"), friction=0.6,
             dt_ms=4.0, seeds=2,
         ),
-        Grid(platform="sensors", test=("lidar", "camera", "lidar-noise", "schedule"), seeds=1),
+        Grid(
+            platform="sensors",
+            test=("lidar", "camera", "camera-in-view", "lidar-noise", "schedule"), seeds=1,
+        ),
         Grid(platform=_ROBOTS, test="noise", seeds=3),
     ),
     default_seeds=1,

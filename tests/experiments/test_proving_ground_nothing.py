@@ -22,7 +22,7 @@ def run(**given):
         {"platform": "koala", "test": "turn", "turn": 2.0},
         {"platform": "koala", "test": "odometry", "turn": 2.0},
         {"platform": "koala", "test": "square", "variant": "left", "speed": 0.4},
-        {"platform": "tamiya_txt1", "test": "unicycle", "variant": "changing"},
+        {"platform": "tamiya_txt1", "test": "unicycle-open", "variant": "changing"},
     ],
     ids=lambda g: g["test"],
 )
@@ -84,7 +84,7 @@ def test_noise_that_moves_nothing_is_refused(monkeypatch):
 
 
 def test_the_truck_rolls_over_at_a_speed_it_drove_not_only_one_it_was_asked_for():
-    found = run(platform="tamiya_txt1", test="roll-over")
+    found = run(platform="tamiya_txt1", test="roll-over-steps")
     # inner wheels spin: it never drives what it is asked for
     assert 2.0 < found["rolls_driven"] < found["rolls_at"] - 0.05
     assert found["held_driven"] < found["rolls_driven"]
