@@ -58,6 +58,8 @@ def _circles(rows: Table, folder: Path) -> Path:
         for speed, at in rows.split("speed"):
             points, estimates = [], []
             for angle, there in at.split("angle_deg"):
+                if float(angle) < 0:  # to the right: one angle, a line across zero would mislead
+                    continue
                 values = there.values("error_pct")
                 middle = float(values.mean())
                 points.append(float(angle))
