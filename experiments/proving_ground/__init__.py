@@ -12,6 +12,19 @@ from mjmr.study import Study
 
 _HERE = "experiments.proving_ground"
 
+# fmt: off
+TESTS = (
+    "straight", "turn", "circle", "stop", "crowd", "odometry", "odometry-even", "square",
+    "unicycle", "unicycle-open", "roll-over", "roll-over-steps", "walk", "get-up", "kick", "roll",
+    "move", "pendulum", "tension", "dash", "lidar", "lidar-noise", "sonar", "sonar-thin", "camera",
+    "camera-in-view", "schedule", "noise",
+)
+VARIANTS = (
+    "plain", "forward", "reverse", "changing", "left", "right", "front", "back", "slow", "backward",
+    "turn-left", "turn-right", "lab-curve", "lab-tendon", "field-curve", "field-tendon", "planar",
+    "omni",
+)
+# fmt: on
 study = Study(
     name="proving-ground",
     title="Every platform and sensor against its data sheet",
@@ -32,8 +45,13 @@ study = Study(
             "pioneer2dx",
             ("pioneer2dx", "koala", "aibo_ers7", "tamiya_txt1", "nims", "soccer_bot", "sensors"),
         ),
-        Parameter("test", "which manoeuvre or measurement; see the platform's module", "straight"),
-        Parameter("variant", "which kind of it, where a test has kinds", "plain"),
+        Parameter(
+            "test",
+            "which manoeuvre or measurement; each platform has its own, see its module",
+            "straight",
+            TESTS,
+        ),
+        Parameter("variant", "which kind of it, where a test has kinds", "plain", VARIANTS),
         Parameter("speed", "asked for", 0.0, unit="m/s"),
         Parameter("turn", "yaw rate asked for", 0.0, unit="rad/s"),
         Parameter("angle_deg", "steering angle asked for", 0.0, unit="deg"),

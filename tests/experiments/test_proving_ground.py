@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from experiments.proving_ground import aibo, course, figures, study
+from experiments.proving_ground import TESTS, aibo, course, figures, study
 from experiments.proving_ground.trial import MODULES, module, trial
 from mjmr.claims import Bound, Evidence, judge
 from mjmr.conditions import Grid
@@ -36,8 +36,11 @@ def test_every_platform_has_a_sheet_and_every_claim_a_test_that_runs():
 
 
 def test_an_unknown_test_lists_those_there_are():
-    with pytest.raises(UnknownNameError, match="unknown test of koala 'jump'; valid:.*square"):
+    with pytest.raises(UnknownNameError, match="unknown value of test 'jump'; valid:.*square"):
         run(platform="koala", test="jump")
+    with pytest.raises(UnknownNameError, match="unknown test of koala 'kick'; valid:.*square"):
+        run(platform="koala", test="kick")
+    assert set(TESTS) == {"noise"}.union(*(module(platform).TESTS for platform in MODULES))
 
 
 def test_a_straight_run_sees_what_is_wrong_with_a_base(monkeypatch):
