@@ -172,7 +172,7 @@ class _PushMeter:
         model = simulation.model
         self._simulation = simulation
         self._rims = {model.geom(f"{name}/rim").id for name in robots.names}
-        self._disc = model.geom(simulation.world.movers[0][0]).id
+        self._disc = model.geom(f"{simulation.world.movers[0][0]}_rim").id
         self._times: list[float] = []
         self._forces: list[Array] = []
         simulation.observe(self._see)

@@ -100,17 +100,52 @@ def test_it_stays_upright_and_on_its_foot_alone():
     _, _, simulation = hall((0.0, 0.0, 0.1))
     start(simulation, (1.0, 0.5), 3.0)
     model, data = simulation.model, simulation.data
-    hull, heights, touched = model.geom("disc0").id, [], []
+    foot, heights, touched = model.geom("disc0_foot").id, [], []
 
     def see():
-        touched.append((data.contact.geom == hull).any())
+        touched.append((data.contact.geom[:, 1] == foot).tolist())
         heights.append(data.body("disc0").xpos[2])
 
     simulation.watch_steps(see)
     run(simulation, 1.0)
-    assert not any(touched)
+    # its foot and the robot's wheels and caster
+    assert all(sum(each) == 1 for each in touched)
+    assert all(len(each) == 4 for each in touched)
     assert np.ptp(heights) < 1e-3
     assert data.body("disc0").xmat[8] == pytest.approx(1.0)
+
+
+def test_a_heap_of_discs_stays_whole():
+    """Robots shove 30 discs about for a minute: none is deep in another, nor thrown away."""
+    rng = np.random.default_rng(1000)
+    world = World(bounds=[-2, -2, 2, 2], wall_height=0.3)
+    places = np.empty((0, 2))
+    while len(places) < 30:
+        place = rng.uniform(-1.8, 1.8, 2)
+        if (np.hypot(*(places - place).T) > 0.205).all() and np.hypot(*place) > 1.0:
+            places = np.vstack([places, place])
+    for x, y in places:
+        world.add_disc(x, y, 0.1, rng.choice([1.8, 7.2]))
+    robots = world.add_group(
+        RoundPusher, [[-0.4, -0.4, 0.0], [0.4, -0.4, 1.0], [0.4, 0.4, 2.0], [-0.4, 0.4, 3.0]]
+    )
+    simulation = Simulation(world, control_period=0.1, dt_max=0.01)
+    data, depths, speeds = simulation.data, [0.0], []
+
+    def see():
+        depths.append(-data.contact.dist.min(initial=0.0))
+        speeds.append(np.abs(data.qvel[: 4 * 30].reshape(30, 4)[:, :3]).max())
+
+    simulation.watch_steps(see)
+    for k, _ in enumerate(simulation.ticks(60.0)):
+        if k % 20 == 0:
+            commands = np.column_stack([rng.choice([0.5, 0.5, -0.5], 4), rng.uniform(-1.5, 1.5, 4)])
+        robots.drive(commands)
+    gone = np.hypot(*(simulation.mover_poses()[:, :2] - places).T)
+    assert np.median(gone) > 0.1
+    assert max(depths) < 0.008
+    assert max(speeds) < 1.5
+    assert data.warning.number.sum() == 0
 
 
 def test_two_discs_pass_a_push_on():
@@ -202,8 +237,8 @@ def test_discs_that_cannot_be_are_refused():
         world.add_disc(np.nan, 0.0, 0.1, 1.0)
     with pytest.raises(InvalidInputError, match=r"must lie within x -0.9 to 0.9"):
         world.add_disc(0.95, 0.0, 0.1, 1.0)
-    with pytest.raises(InvalidInputError, match="higher than 0.008 m"):
-        world.add_disc(0.0, 0.0, 0.1, 1.0, height=0.005)
+    with pytest.raises(InvalidInputError, match="must be higher; got 0.05 m"):
+        world.add_disc(0.0, 0.0, 0.1, 1.0, height=0.05)
     assert not world.props
     with pytest.raises(InvalidInputError, match="none of box, ball, cart, disc"):
         world.add_group(RoundPusher, [[0, 0, 0]], name="disc3")
