@@ -137,10 +137,10 @@ def test_a_heap_of_discs_stays_whole():
         speeds.append(np.abs(data.qvel[: 4 * 30].reshape(30, 4)[:, :3]).max())
 
     simulation.watch_steps(see)
+    speed = rng.choice([0.5, 0.5, -0.5], (30, 4)).repeat(20, axis=0)
+    rate = rng.uniform(-1.5, 1.5, (30, 4)).repeat(20, axis=0)
     for k, _ in enumerate(simulation.ticks(60.0)):
-        if k % 20 == 0:
-            commands = np.column_stack([rng.choice([0.5, 0.5, -0.5], 4), rng.uniform(-1.5, 1.5, 4)])
-        robots.drive(commands)
+        robots.drive(np.column_stack([speed[k], rate[k]]))
     gone = np.hypot(*(simulation.mover_poses()[:, :2] - places).T)
     assert np.median(gone) > 0.1
     assert max(depths) < 0.008
