@@ -31,6 +31,7 @@ _choose_gl()
 
 _WHERE = {
     "AiboERS7": "mjmr.robots.aibo_ers7",
+    "Beacon": "mjmr.sensors.beacon",
     "Bumper": "mjmr.sensors.bumper",
     "CableTension": "mjmr.sensors.cable_tension",
     "Camera": "mjmr.sensors.camera",
@@ -58,6 +59,7 @@ _WHERE = {
     "Sonar": "mjmr.sensors.rangers",
     "TamiyaTXT1": "mjmr.robots.tamiya_txt1",
     "Team": "mjmr.team",
+    "VisualArc": "mjmr.sensors.visual_arc",
     "WheelEncoders": "mjmr.sensors.encoders",
     "World": "mjmr.world",
     "environment": "mjmr.env",
