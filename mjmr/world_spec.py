@@ -7,6 +7,7 @@ import numpy as np
 
 from mjmr.cart import Cart
 from mjmr.cart_servos import CartServos, add_cart
+from mjmr.disc import Disc, add_disc
 from mjmr.robots.platform import FLOOR
 
 if TYPE_CHECKING:
@@ -41,6 +42,8 @@ def build_spec(world: "World") -> mujoco.MjSpec:
     for name, prop in world.named_props():
         if isinstance(prop, Cart):
             add_cart(spec, name, prop)
+        elif isinstance(prop, Disc):
+            add_disc(spec, name, prop, FLOOR)
         else:
             _prop(spec, name, prop)
     for group in world.groups:

@@ -1,0 +1,134 @@
+"""Disc: a round object that slides on the floor and resists with a stated friction force."""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mjmr.errors import InvalidInputError
+
+if TYPE_CHECKING:
+    import mujoco
+
+_GRAVITY = 9.81  # m/s^2, of every mjmr world
+_COEFFICIENT = 0.6  # of friction with the floor where no mass is given
+_FOOT = 0.02  # m, radius of the foot
+_CLEARANCE = 0.004  # m, between the hull and the floor
+_HULL_FRICTION = 0.1
+JOINTS = ("", "_y", "_z", "_yaw")  # of a disc: its name and these
+
+
+@dataclass(frozen=True, kw_only=True)
+class Disc:
+    """An upright cylinder that slides on the floor, turns about the vertical and cannot tip.
+
+    Its floor friction is that of an evenly loaded disc, as far as an ellipsoid of force and torque
+    describes it (Howe and Cutkosky, 1996): ``friction_force`` against sliding in any direction,
+    ``friction_force * 2/3 radius`` against turning in place, less of either together.
+
+    Attributes:
+        x: Centre [m], world frame.
+        y: The same.
+        radius: [m].
+        height: [m].
+        friction_force: Force at which it slides [N].
+        mass: [kg]; None: such that the friction force makes a coefficient of 0.6.
+        rgba: Colour, 0 to 1.
+
+    Raises:
+        InvalidInputError: A size, mass or force that is not positive and finite.
+    """
+
+    x: float
+    y: float
+    radius: float
+    height: float = 0.26
+    friction_force: float
+    mass: float | None = None
+    rgba: tuple[float, float, float, float] = (0.95, 0.45, 0.05, 1.0)
+
+    def __post_init__(self):
+        if not (math.isfinite(self.x) and math.isfinite(self.y)):
+            raise InvalidInputError(f"a disc's place must be finite; got {self.x}, {self.y}")
+        for name in ("radius", "height", "friction_force", "mass"):
+            value = getattr(self, name)
+            if not (name == "mass" and value is None or 0 < value < math.inf):
+                raise InvalidInputError(f"a disc's {name} must be positive and finite; got {value}")
+        if self.height <= 2 * _CLEARANCE:
+            raise InvalidInputError(
+                f"a disc is higher than {2 * _CLEARANCE:g} m; got {self.height} m"
+            )
+
+    @property
+    def weight(self) -> float:
+        """Mass [kg], given or chosen."""
+        return self.friction_force / (_COEFFICIENT * _GRAVITY) if self.mass is None else self.mass
+
+    @property
+    def coefficient(self) -> float:
+        """Of friction between its foot and the floor."""
+        return self.friction_force / (self.weight * _GRAVITY)
+
+
+def add_disc(spec: "mujoco.MjSpec", name: str, disc: Disc, floor: str) -> None:
+    """Add a disc to ``spec``: a hull that is pushed, and one foot that carries all floor friction.
+
+    One foot, because the friction force of several depends on how the weight is shared and each
+    creeps; three slides and a hinge instead of a free joint, because one foot holds nothing
+    upright. Positions of the joints are world coordinates.
+
+    Args:
+        spec: The world's.
+        name: Of body, hull and first joint; the others are called as ``JOINTS`` says.
+        disc: What to add.
+        floor: Name of the floor's geom.
+    """
+    import mujoco
+
+    at = [disc.x, disc.y, disc.height / 2]
+    body = spec.worldbody.add_body(name=name, pos=at)
+    slide, hinge = mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_HINGE
+    for k, ending in enumerate(JOINTS[:3]):
+        body.add_joint(name=name + ending, type=slide, axis=np.eye(3)[k], ref=at[k])
+    body.add_joint(name=name + JOINTS[3], type=hinge, axis=[0, 0, 1])
+    half = (disc.height - _CLEARANCE) / 2
+    body.add_geom(
+        name=name,
+        type=mujoco.mjtGeom.mjGEOM_CYLINDER,
+        pos=[0, 0, _CLEARANCE / 2],
+        size=[disc.radius, half, 0],
+        mass=disc.weight,
+        rgba=disc.rgba,
+        friction=[_HULL_FRICTION, 0.005, 0.0001],
+        priority=1,
+        group=0,
+    )
+    body.add_geom(
+        name=f"{name}_foot",
+        type=mujoco.mjtGeom.mjGEOM_SPHERE,
+        pos=[0, 0, _FOOT - disc.height / 2],
+        size=[_FOOT, 0, 0],
+        mass=0,
+        rgba=disc.rgba,
+        contype=0,
+        conaffinity=0,
+        group=3,
+    )
+    mu = disc.coefficient
+    spec.add_pair(
+        name=f"{name}_foot",
+        geomname1=floor,
+        geomname2=f"{name}_foot",
+        condim=4,
+        friction=[mu, mu, mu * 2.0 / 3.0 * disc.radius, 0.0001, 0.0001],
+        # hardly any softness: how fast a held disc creeps is proportional to it
+        solimp=[0.999, 0.999, 0.001, 0.5, 2.0],
+    )
+
+
+def disc_positions(poses: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Positions (k, 4) of a disc's joints at poses (k, 7): position, quaternion."""
+    yaw = 2.0 * np.arctan2(poses[:, 6], poses[:, 3])
+    return np.column_stack([poses[:, :3], yaw])
