@@ -53,12 +53,8 @@ def pusher_machine(parameters: Parameters, *, share: str = "") -> StateMachine:
     near = {"reach": _NEAR, "stop": STAND_OFF}
     avoid = Avoid("teammates", **crowd) + Avoid("obstacles", **near)
     to_noise = Swirl("teammates", towards=noise, **crowd) + Swirl("obstacles", towards=noise, **near)
-    to_home = Swirl("teammates", towards="home", away=not build, **crowd) + Swirl(
-        "obstacles", towards="home", away=not build, **near
-    )
-    to_target = Swirl("teammates", towards="target", **crowd) + Swirl(
-        "obstacles", towards="target", **near
-    )
+    to_home = Swirl("teammates", towards="home", away=not build, **crowd)
+    to_target = Swirl("teammates", towards="target", **crowd)
     round_target = {"towards": "home", "away": not build, "reach": _REACH, "stop": STAND_OFF}
 
     wander = 0.6 * noise + avoid + to_noise

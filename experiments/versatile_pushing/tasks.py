@@ -27,7 +27,8 @@ class Watch:
     def __init__(self, simulation: Simulation, task: str):
         """Args: simulation: To be watched. task: One of ``TASKS``."""
         self._simulation, self._task = simulation, TASKS[task]
-        self.start = self._places()
+        self.start = self.places = self._places()
+        self.done = self._task.done(self.places)
         self.finished = np.inf
         self.far = 0.0
         simulation.observe(self._look)

@@ -162,8 +162,8 @@ def mount(group: Group, vision: str) -> None:
         ),
         "ring",
     )
-    group.mount(Compass(rate=1 / PERIOD, noise=np.radians(1.0)))
-    group.mount(Beacon(rate=1 / PERIOD, bearing_noise=np.radians(1.0), distance_noise=0.02))
+    group.mount(Compass(rate=1 / PERIOD, noise=np.radians(0.5)))
+    group.mount(Beacon(rate=1 / PERIOD, bearing_noise=np.radians(0.5), distance_noise=0.02))
 
 
 def places(task: str, map_seed: int) -> Array:
