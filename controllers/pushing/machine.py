@@ -9,7 +9,7 @@ from mjmr.errors import InvalidInputError
 RADIUS = 0.24  # m, of the robot
 STAND_OFF = RADIUS + 0.1  # m, from its centre to a surface: where obstacles have full strength
 _REACH = 1.5  # m: teammates and targets count up to here
-_NEAR = 0.5  # m: whatever the obstacle ring feels, walls above all, counts up to here
+_NEAR = 0.42  # m: whatever the obstacle ring feels, walls above all, counts up to here
 _HOLD = 5.0  # s, of a random heading
 _TOUCH = RADIUS + 0.05  # m: positioning robots back off at full strength
 _DRAW = 3.0  # m from home: where the draw to it has its full strength
