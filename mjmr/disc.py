@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 _GRAVITY = 9.81  # m/s^2, of every mjmr world
 _COEFFICIENT = 0.6  # of friction with the floor where no mass is given
 _FOOT = 0.02  # m, radius of the foot
+_GRIP = 0.01  # friction coefficient of the foot, which a spring presses down
+_SPRING = 10.0  # m, by which that spring is drawn out: its force hardly depends on the height
+_TIME = 0.02  # s, time constant of the foot's contact
 _CLEARANCE = 0.004  # m, between the hull and the floor
 _HULL_FRICTION = 0.1
 JOINTS = ("", "_y", "_z", "_yaw")  # of a disc: its name and these
@@ -66,11 +69,6 @@ class Disc:
         """Mass [kg], given or chosen."""
         return self.friction_force / (_COEFFICIENT * _GRAVITY) if self.mass is None else self.mass
 
-    @property
-    def coefficient(self) -> float:
-        """Of friction between its foot and the floor."""
-        return self.friction_force / (self.weight * _GRAVITY)
-
 
 def add_disc(spec: "mujoco.MjSpec", name: str, disc: Disc, floor: str) -> None:
     """Add a disc to ``spec``: a hull that is pushed, and one foot that carries all floor friction.
@@ -87,11 +85,20 @@ def add_disc(spec: "mujoco.MjSpec", name: str, disc: Disc, floor: str) -> None:
     """
     import mujoco
 
-    at = [disc.x, disc.y, disc.height / 2]
+    load = disc.friction_force / _GRIP
+    rate = 2.0 / _TIME
+    # soft enough to stay on the floor when it slides at twice what robots do
+    softness = _GRIP * rate * disc.weight / load
+    hardness = 1.0 / (1.0 + softness)
+    # as deep as the spring presses it in at rest; less when it slides
+    depth = _GRIP * rate * hardness * _TIME**2
+    at = [disc.x, disc.y, disc.height / 2 - depth]
     body = spec.worldbody.add_body(name=name, pos=at)
     slide, hinge = mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_HINGE
     for k, ending in enumerate(JOINTS[:3]):
         body.add_joint(name=name + ending, type=slide, axis=np.eye(3)[k], ref=at[k])
+    body.joints[2].stiffness = [(load - disc.weight * _GRAVITY) / _SPRING, 0.0, 0.0]
+    body.joints[2].springref = at[2] - _SPRING
     body.add_joint(name=name + JOINTS[3], type=hinge, axis=[0, 0, 1])
     half = (disc.height - _CLEARANCE) / 2
     body.add_geom(
@@ -112,19 +119,19 @@ def add_disc(spec: "mujoco.MjSpec", name: str, disc: Disc, floor: str) -> None:
         size=[_FOOT, 0, 0],
         mass=0,
         rgba=disc.rgba,
-        contype=0,
+        # it touches as a pair alone: bit 2 is nobody's
+        contype=2,
         conaffinity=0,
         group=3,
     )
-    mu = disc.coefficient
     spec.add_pair(
         name=f"{name}_foot",
         geomname1=floor,
         geomname2=f"{name}_foot",
         condim=4,
-        friction=[mu, mu, mu * 2.0 / 3.0 * disc.radius, 0.0001, 0.0001],
-        # hardly any softness: how fast a held disc creeps is proportional to it
-        solimp=[0.999, 0.999, 0.001, 0.5, 2.0],
+        friction=[_GRIP, _GRIP, _GRIP * 2.0 / 3.0 * disc.radius, 0.0001, 0.0001],
+        solref=[_TIME, 1.0],
+        solimp=[hardness, hardness, 0.001, 0.5, 2.0],
     )
 
 

@@ -20,11 +20,10 @@ class PropPlaces:
         """Look up every index once."""
         movers = world.movers
         discs = np.array([isinstance(prop, Disc) for _, prop in movers], dtype=bool)
+        first = np.array([model.joint(name).qposadr[0] for name, _ in movers], dtype=np.int64)
         self._free, self._discs = np.flatnonzero(~discs), np.flatnonzero(discs)
-        first = [model.joint(movers[k][0]).qposadr[0] for k in self._free]
-        self._free_qpos = np.array(first, dtype=np.int64).reshape(-1, 1) + np.arange(7)
-        first = [model.joint(movers[k][0]).qposadr[0] for k in self._discs]
-        self._disc_qpos = np.array(first, dtype=np.int64).reshape(-1, 1) + np.arange(len(JOINTS))
+        self._free_qpos = first[self._free, None] + np.arange(7)
+        self._disc_qpos = first[self._discs, None] + np.arange(len(JOINTS))
 
     def place(self, data: "mujoco.MjData", poses: NDArray[np.float64]) -> None:
         """Put the movers at poses (k, 7): position, quaternion; for pictures."""

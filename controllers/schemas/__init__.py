@@ -6,6 +6,7 @@ from controllers.schemas.base import Blend, Schema, View, unit
 from controllers.schemas.cues import After, Condition, Cue, Hysteresis, Sees, Within
 from controllers.schemas.machine import Behaviour, StateMachine, Transition
 from controllers.schemas.noise import Noise
+from controllers.schemas.past import AvoidPast
 from controllers.schemas.percepts import Percept, Percepts, Things
 from controllers.schemas.steering import steer
 from controllers.schemas.walls import FollowWall
@@ -13,6 +14,7 @@ from controllers.schemas.walls import FollowWall
 __all__ = [
     "After",
     "Avoid",
+    "AvoidPast",
     "Behaviour",
     "Blend",
     "Condition",

@@ -51,6 +51,36 @@ class Things:
         valid = np.asarray(np.isfinite(given).all(axis=2))
         return cls(np.ascontiguousarray(given), np.ascontiguousarray(radii), valid)
 
+    @classmethod
+    def from_scan(
+        cls, ranges: Array, angles: Array, heading: ArrayLike, *, sectors: int = 12
+    ) -> "Things":
+        """The nearest return in each sector of a scan, as points.
+
+        Args:
+            ranges: Shape (n, b) [m]; what is not finite is no return.
+            angles: Of the beams in the robot's frame (b,) [rad], increasing.
+            heading: Of the robots (n,) [rad]; its axes are those of the offsets.
+            sectors: Parts of equal angle, at most b: k.
+
+        Raises:
+            InvalidInputError: Shapes that do not fit, or sectors outside 1 to b.
+        """
+        scan = np.asarray(ranges, dtype=np.float64)
+        if scan.ndim != 2 or scan.shape[1] != len(angles) or not 1 <= sectors <= len(angles):
+            raise InvalidInputError(
+                f"ranges have shape (n, {len(angles)}) for {len(angles)} angles, in 1 to as many "
+                f"sectors; got {scan.shape} and {sectors}"
+            )
+        away = np.where(np.isfinite(scan), scan, np.inf)
+        starts = np.arange(sectors) * len(angles) // sectors
+        near = np.stack([s.argmin(axis=1) for s in np.split(away, starts[1:], axis=1)], axis=1)
+        near += starts
+        gap = np.take_along_axis(away, near, axis=1)
+        gap = np.where(np.isfinite(gap), gap, np.nan)
+        bearing = np.asarray(angles)[near] + np.asarray(heading, dtype=np.float64)[:, None]
+        return cls.of(gap[..., None] * np.stack([np.cos(bearing), np.sin(bearing)], axis=2))
+
     @property
     def n(self) -> int:
         """Robots that perceive."""

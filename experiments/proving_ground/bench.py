@@ -22,6 +22,7 @@ _TOLD: dict[str, tuple[list[float], float, float]] = {
     "pioneer2dx": ([0.4, 0.3], 0.1, 0.005),
     "koala": ([0.3, 0.5], 0.1, 0.005),
     "tamiya_txt1": ([1.0, 0.2], 0.1, 0.005),
+    "round_pusher": ([0.3, 0.5], 0.1, 0.010),
     "nims": ([0.1, 0.0], 0.1, 0.010),
     "soccer_bot": ([0.5, 0.2, 0.5], 1 / 60, 0.005),
 }

@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 
 from controllers.schemas import (
     Avoid,
+    AvoidPast,
     Blend,
     Draw,
     Follow,
@@ -202,3 +203,59 @@ def test_an_unknown_percept_is_named():
 def test_percepts_of_another_team_are_refused():
     with pytest.raises(InvalidInputError, match="percept 'home' must be of 1 robots; got 2"):
         field_of(MoveTo("home"), {"home": [[1.0, 0.0], [1.0, 0.0]]})
+
+
+def test_avoiding_the_past_leads_out_of_a_pocket_that_attraction_stays_in():
+    """A wall of pillars, open to the back, between robot and goal."""
+    arc = np.linspace(-1.6, 1.6, 60)
+    pillars = np.concatenate(
+        [
+            np.column_stack([np.full(60, 1.0), arc]),
+            np.column_stack([np.linspace(-0.6, 1.0, 30), np.full(30, 1.6)]),
+            np.column_stack([np.linspace(-0.6, 1.0, 30), np.full(30, -1.6)]),
+        ]
+    )
+    goal = np.array([3.0, 0.0])
+    avoid, go = Avoid("nearest wall", reach=0.5, stop=0.1), MoveTo("goal")
+    past = AvoidPast("place", walls="walls", towards="goal")
+    nearest = {}
+    for name, blend in {"drawn": go + 0.3 * avoid, "past": past + 0.3 * avoid}.items():
+        behaviour = StateMachine(states={"go": blend}).start(1, np.random.default_rng(0))
+        robot, least = np.zeros(2), np.inf
+        for k in range(4000):
+            walls = Things.of((pillars - robot)[None], 0.05)
+            percepts = {
+                "walls": walls,
+                "nearest wall": walls.nearest(),
+                "goal": (goal - robot)[None],
+                "place": robot[None],
+            }
+            step = 0.02 * behaviour.step(percepts, 0.05 * k)[0]
+            blocked = np.hypot(*(pillars - robot - step).T).min() < 0.15
+            robot = robot if blocked else robot + step
+            least = min(least, float(np.hypot(*(goal - robot))))
+        nearest[name] = least
+    assert nearest["drawn"] > 1.8
+    assert nearest["past"] < 0.5
+
+
+def test_robots_avoid_their_own_past_only():
+    past = AvoidPast("place", walls="walls")
+    behaviour = StateMachine(states={"go": past}).start(2, np.random.default_rng(0))
+    nothing = Things.of(np.empty((2, 0, 2)))
+    for k in range(64):  # the first goes along x again and again, the second stays
+        places = np.array([[0.2 + 0.4 * (k % 8), 0.2], [0.2, 0.2]])
+        if k == 60:
+            break
+        behaviour.step({"walls": nothing, "place": places}, float(k))
+    vector = behaviour.step({"walls": nothing, "place": places}, 60.0)
+    assert abs(vector[0, 1]) > 0.9 * abs(vector[0, 0])  # off its beaten track
+    lost = behaviour.step({"walls": nothing, "place": np.full((2, 2), np.nan)}, 61.0)
+    assert (lost == 0).all()
+
+
+def test_avoid_past_is_checked():
+    with pytest.raises(InvalidInputError, match="avoid past: cell must be positive"):
+        AvoidPast("place", walls="walls", cell=0.0)
+    with pytest.raises(InvalidInputError, match="7 cells a side or more; got 3"):
+        AvoidPast("place", walls="walls", cells=3)

@@ -1,0 +1,1 @@
+"""Toward versatility of multi-robot systems (Cherry and Zhang, 2005)."""
