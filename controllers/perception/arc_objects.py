@@ -116,13 +116,21 @@ def _find(bearings, ranges, kinds, radii, max_range, most, resolution, least):
                 start += 1
                 continue
             stop = _run_end(bearings[i], ranges[i], kinds[i], start, radii[label], resolution)
-            if stop - start >= least:
+            pieces = _pieces(bearings[i], ranges[i], start, stop, radii[label])
+            for piece in range(pieces):
+                first = start + (stop - start) * piece // pieces
+                last = start + (stop - start) * (piece + 1) // pieces
+                if last - first < least:
+                    continue
+                # two abreast hide nothing of each other
+                low = piece > 0 or _edge_free(ranges[i], kinds[i], start, -1)
+                high = piece < pieces - 1 or _edge_free(ranges[i], kinds[i], stop - 1, 1)
                 x, y, near, both = _estimate(
-                    bearings[i], ranges[i], kinds[i], start, stop, radii[label]
+                    bearings[i], ranges[i], first, last, radii[label], low, high
                 )
                 if near <= max_range:
                     row[count, 0], row[count, 1], row[count, 2] = label, x, y
-                    row[count, 3], row[count, 4], row[count, 5] = near, both, stop - start
+                    row[count, 3], row[count, 4], row[count, 5] = near, both, last - first
                     count = _join(row, count, radii)
             start = stop
         order = np.argsort(row[:count, 3])
@@ -148,9 +156,9 @@ def _run_end(bearings, ranges, kinds, start, radius, resolution):
         if radius == 0.0:  # a wall: flat, met at any slant
             continue
         blur = resolution * r * r
-        if abs(r - ranges[j - 1]) > 0.15 + 2.0 * blur:
+        if abs(r - ranges[j - 1]) > max(radius, 0.08) + 1.3 * blur:
             return j
-        rise = max(0.4 * radius, 0.04) + blur
+        rise = max(0.4 * radius, 0.04) + 1.3 * blur
         if peak - valley > rise and peak - r > rise:
             return peak_at
         if r < valley and peak - valley <= rise:
@@ -162,17 +170,38 @@ def _run_end(bearings, ranges, kinds, start, radius, resolution):
 
 
 @njit
-def _estimate(bearings, ranges, kinds, start, stop, radius):
+def _pieces(bearings, ranges, start, stop, radius):
+    """How many things of a radius side by side a run is as wide as."""
+    if radius == 0.0 or stop - start < 4:
+        return 1
+    near = np.inf
+    for j in range(start, stop):
+        near = min(near, ranges[j])
+    if near <= 0.0:
+        return 1
+    step = (bearings[stop - 1] - bearings[start]) / (stop - 1 - start)
+    wide = bearings[stop - 1] - bearings[start] + step
+    return max(1, int(wide / (2.0 * math.asin(radius / (near + radius))) + 0.4))
+
+
+@njit
+def _edge_free(ranges, kinds, j, way):
+    """Whether column ``j`` shows the true edge of a thing on one side: what is next is behind."""
+    k = j + way
+    if k < 0 or k >= ranges.shape[0]:
+        return False
+    return kinds[k] == 0 or ranges[k] > ranges[j]
+
+
+@njit
+def _estimate(bearings, ranges, start, stop, radius, low, high):
     """Centre, gap, and whether both edges are free, of the run [start, stop)."""
-    c = ranges.shape[0]
     near, at = np.inf, start
     for j in range(start, stop):
         if ranges[j] < near:
             near, at = ranges[j], j
     if radius == 0.0:
         return near * math.cos(bearings[at]), near * math.sin(bearings[at]), near, 1.0
-    low = start > 0 and (kinds[start - 1] == 0 or ranges[start - 1] > ranges[start])
-    high = stop < c and (kinds[stop] == 0 or ranges[stop] > ranges[stop - 1])
     if not low and not high:
         x, y = _circle(bearings, ranges, start, stop, radius)
         return x, y, max(math.hypot(x, y) - radius, 0.0), 0.0

@@ -63,7 +63,7 @@ class FloorColumns:
         self._ahead = np.arctan2(ahead[:, 1], ahead[:, 0])
         self.columns = camera.width
         lowest = max((paint.foot for paint in paints), default=0.0)
-        self.resolution = 1.0 / ((float(z) - lowest) * camera.focal)
+        self.resolution = 1.0 / ((float(camera.position[2]) - lowest) * camera.focal)
 
     def look(self, images: NDArray[np.uint8]) -> tuple[Array, Array, Array]:
         """Columns of n pictures.

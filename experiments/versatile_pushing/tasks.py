@@ -1,23 +1,24 @@
 """One trial of foraging, transport or construction: the same loop for all three."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from controllers.perception.arc_objects import Objects
 from controllers.pushing import Gaze, Parameters, Pusher, Recovery, Surroundings
 from experiments.versatile_pushing.sight import nothing, sight
 from experiments.versatile_pushing.worlds import HALF, PERIOD, TASKS, build
 from mjmr.faults import Fault
+from mjmr.group import Group
+from mjmr.sensors.lidar import Lidar
 from mjmr.simulation import Simulation
 
 Array = NDArray[np.float64]
 Metrics = dict[str, float | int | bool | str | None]
-TIMESTEP = 0.01  # s
 MARGIN = {"square": -0.03, "disc": -0.05, "outside": 0.05}  # m, of the zone as robots know it
 STOPS, DARK = 4.0, (4.0, 9.0)  # s: when the stopped robot stops, when cameras deliver nothing
-STILL = 2620.0  # s, from which on a run counts as of full length
 _ON_WALL = 0.03  # m, from a disc to a wall
 
 
@@ -60,11 +61,9 @@ def run(condition: Mapping[str, Any], seed: int) -> Metrics:
         vision=condition["vision"],
         jitter=seed,
     )
-    if condition["impratio"] != 10.0:
-        world.edit(lambda spec: setattr(spec.option, "impratio", condition["impratio"]))
     if condition["failure"] == "stopped":
         robots.faults.add(Fault(kind="dead", robot=0, start=STOPS))
-    simulation = Simulation(world, seed=seed, control_period=PERIOD, dt_max=TIMESTEP)
+    simulation = Simulation(world, seed=seed, control_period=PERIOD, dt_max=condition["dt_ms"] / 1000)
     watch = Watch(simulation, condition["task"])
     eyes = sight(condition["vision"], robots, task.disc_radius)
     pusher = make_pusher(condition, simulation, robots)
@@ -74,17 +73,9 @@ def run(condition: Mapping[str, Any], seed: int) -> Metrics:
         f"robots {' '.join(pusher.behaviour.state_names)}"
     )
     turret: Any = robots.sensors["turret"]
-    sensors = robots.sensors
     for t in simulation.ticks(condition["duration"]):
         dark = condition["failure"] == "camera" and DARK[0] <= t < DARK[1]
-        heading = sensors["compass"].read()
-        gaze = Gaze(
-            objects=nothing(n) if dark else eyes.look(),
-            bearing=heading + turret.read(),
-            heading=heading,
-            home=sensors["beacon"].read(),
-            ring=sensors["ring"].read(),
-        )
+        gaze = take_in(robots, nothing(n) if dark else eyes.look())
         command, pan = pusher.step(gaze, t)
         robots.drive(command)
         turret.aim(pan)
@@ -95,9 +86,22 @@ def run(condition: Mapping[str, Any], seed: int) -> Metrics:
     return metrics(watch, tally, pusher, condition)
 
 
-def make_pusher(condition: Mapping[str, Any], simulation: Simulation, robots: Any) -> Pusher:
+def take_in(robots: Group, objects: Objects) -> Gaze:
+    """What robots perceive now: objects of the camera's, and what every other sensor reads."""
+    sensors = robots.sensors
+    heading = sensors["compass"].read()
+    return Gaze(
+        objects=objects,
+        bearing=heading + sensors["turret"].read(),
+        heading=heading,
+        home=sensors["beacon"].read(),
+        ring=sensors["ring"].read(),
+    )
+
+
+def make_pusher(condition: Mapping[str, Any], simulation: Simulation, robots: Group) -> Pusher:
     """The controller a condition names."""
-    task = TASKS[condition["task"]]
+    task, ring = TASKS[condition["task"]], cast(Lidar, robots.sensors["ring"])
     recovery = None
     if condition["recovery"]:
         recovery = Recovery(robots.n, condition["p"], simulation.rng("recovery"))
@@ -110,7 +114,7 @@ def make_pusher(condition: Mapping[str, Any], simulation: Simulation, robots: An
             zone=task.zone,
             size=task.size + MARGIN[task.zone],
         ),
-        robots.sensors["ring"].angles,
+        ring.angles,
         rng=simulation.rng("schemas"),
         top_speed=robots.platform.max_twist[0],
         top_turn=robots.platform.max_twist[1],

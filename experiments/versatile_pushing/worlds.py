@@ -17,6 +17,7 @@ from mjmr.sensors.beacon import Beacon
 from mjmr.sensors.camera import Camera
 from mjmr.sensors.compass import Compass
 from mjmr.sensors.lidar import Lidar
+from mjmr.sensors.turret import Turret
 from mjmr.sensors.visual_arc import VisualArc
 from mjmr.world import World
 
@@ -37,6 +38,7 @@ RING_HEIGHT, RING_RANGE, RING_BEAMS = 0.215, 0.8, 48
 ARC_HEIGHT, ARC_COLUMNS = 0.1, 128
 WIDTH, HEIGHT = 160, 120  # px
 TEAM = "blue"
+PAINT = (0.42, 0.58, 0.46, 1.0)  # of zones: too pale to be taken for a thing
 ORANGE = (0.95, 0.45, 0.05)
 _WALL_GAP, _CLEARANCE = 0.5, 0.02  # m
 # where robots stand round the large disc, as seen from its centre [degrees], 0 away from home: the
@@ -129,11 +131,17 @@ def add_disc(world: World, at: Any, radius: float, force: float) -> None:
 
 
 def paint_home(world: World, task: str) -> None:
-    """Paint the home zone on the floor, to be seen in films."""
+    """Paint the zone on the floor: for films and those who look on, robots do not use it."""
+    kind = TASKS[task]
+    if kind.zone == "square":
+        world.add_mark(0.0, 0.0, length=2 * kind.size, width=2 * kind.size, rgba=PAINT)
+    else:
+        world.add_mark(0.0, 0.0, radius=kind.size, rgba=PAINT)
 
 
 def mount(group: Group, vision: str) -> None:
     """Give robots their eyes, the obstacle ring, compass and beacon."""
+    group.mount(Turret(rate=1 / PERIOD))
     if vision in ("arcs", "both"):
         group.mount(
             VisualArc(
