@@ -135,6 +135,12 @@ def add_disc(spec: "mujoco.MjSpec", name: str, disc: Disc, floor: str) -> None:
     )
 
 
+def disc_poses(positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Poses (k, 7) of discs, position and quaternion, from their joints' positions (k, 4)."""
+    half, nil = positions[:, 3] / 2.0, np.zeros(len(positions))
+    return np.column_stack([positions[:, :3], np.cos(half), nil, nil, np.sin(half)])
+
+
 def disc_positions(poses: NDArray[np.float64]) -> NDArray[np.float64]:
     """Positions (k, 4) of a disc's joints at poses (k, 7): position, quaternion."""
     yaw = 2.0 * np.arctan2(poses[:, 6], poses[:, 3])

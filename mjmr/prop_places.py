@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from mjmr.disc import JOINTS, Disc, disc_positions
+from mjmr.disc import JOINTS, Disc, disc_poses, disc_positions
 
 if TYPE_CHECKING:
     import mujoco
@@ -24,6 +24,15 @@ class PropPlaces:
         self._free, self._discs = np.flatnonzero(~discs), np.flatnonzero(discs)
         self._free_qpos = first[self._free, None] + np.arange(7)
         self._disc_qpos = first[self._discs, None] + np.arange(len(JOINTS))
+        self._bodies = np.array([model.body(name).id for name, _ in movers], dtype=np.int64)
+
+    def poses(self, data: "mujoco.MjData") -> NDArray[np.float64]:
+        """Poses of the movers (k, 7): position, quaternion; a new array."""
+        ids = self._bodies
+        poses = np.concatenate([data.xpos[ids], data.xquat[ids]], axis=1)
+        # MuJoCo computes places of bodies when a step begins: after it they are a step old
+        poses[self._discs] = disc_poses(data.qpos[self._disc_qpos])
+        return poses
 
     def place(self, data: "mujoco.MjData", poses: NDArray[np.float64]) -> None:
         """Put the movers at poses (k, 7): position, quaternion; for pictures."""

@@ -14,6 +14,7 @@ from mjmr.errors import InvalidInputError, SimulationDivergedError
 from mjmr.guard import plausible
 from mjmr.last_second import LastSecond
 from mjmr.loop import Snapshot, TickedSimulation
+from mjmr.prop_places import PropPlaces
 from mjmr.robots.platform import CheckedDrive, FramedDrive, TiltedDrive
 from mjmr.start_check import check_start
 
@@ -95,8 +96,7 @@ class Simulation(TickedSimulation):
                 )
         self._checks = [d.check for _, d in self._each if isinstance(d, CheckedDrive)]
         self._step_watchers: list[Callable[[], None]] = []
-        bodies = [self.model.body(name).id for name, _ in world.movers]
-        self._mover_ids = np.array(bodies, dtype=np.int64)
+        self._movers = PropPlaces(self.model, world)
         for group, drive in self._each:
             drive.place(data, group.start)
         self._carts = CartServos(self.model, world) if world.carts else None
@@ -144,8 +144,7 @@ class Simulation(TickedSimulation):
 
     def mover_poses(self) -> Array:
         """Poses (k, 7) of the free props."""
-        ids = self._mover_ids
-        return np.concatenate([self.data.xpos[ids], self.data.xquat[ids]], axis=1)
+        return self._movers.poses(self.data)
 
     def cart_boxes(self) -> Array:
         """Carts as boxes (k, 5)."""

@@ -34,7 +34,7 @@ class RoundPusher(Unicycle):
     max_twist = (0.5, 2.5)
     braking = 1.2
     wheels = WHEELS
-    rolling_radius = 0.0798
+    rolling_radius = 0.07985
     track = 0.32
     effective_track = track
     disc_radius = 0.08
