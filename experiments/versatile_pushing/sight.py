@@ -12,7 +12,7 @@ from mjmr.group import Group
 from mjmr.robots.markings import TEAM_COLOURS
 from mjmr.robots.round_pusher import RoundPusher
 
-SKIRT = 0.09  # m: the team's colour begins above it
+SKIRT = 0.04  # m: the team's colour begins above it
 MOST = 16  # objects kept of an arc
 
 
