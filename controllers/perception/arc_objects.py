@@ -217,7 +217,9 @@ def _estimate(bearings, ranges, start, stop, radius, low, high):
         for j in range(start, stop):
             off = bearings[j] - bearing
             across = ranges[j] * math.sin(off)
-            total += ranges[j] * math.cos(off) + math.sqrt(max(radius * radius - across * across, 0.0))
+            total += ranges[j] * math.cos(off) + math.sqrt(
+                max(radius * radius - across * across, 0.0)
+            )
         distance = total / (stop - start)
     gap = max(distance - radius, 0.0)
     both = 1.0 if low and high else 0.0

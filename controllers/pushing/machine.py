@@ -49,13 +49,22 @@ def pusher_machine(parameters: Parameters, *, share: str = "") -> StateMachine:
     """
     c, p, build = parameters.c, parameters.p, parameters.b
     noise = Noise(hold=_HOLD)
-    crowd = {"reach": _REACH, "stop": STAND_OFF}
-    near = {"reach": _NEAR, "stop": STAND_OFF}
-    avoid = Avoid("teammates", **crowd) + Avoid("obstacles", **near)
-    to_noise = Swirl("teammates", towards=noise, **crowd) + Swirl("obstacles", towards=noise, **near)
-    to_home = Swirl("teammates", towards="home", away=not build, **crowd)
-    to_target = Swirl("teammates", towards="target", **crowd)
-    round_target = {"towards": "home", "away": not build, "reach": _REACH, "stop": STAND_OFF}
+    away = not build
+    avoid = Avoid("teammates", reach=_REACH, stop=STAND_OFF) + Avoid(
+        "obstacles", reach=_NEAR, stop=STAND_OFF
+    )
+    to_noise = Swirl("teammates", towards=noise, reach=_REACH, stop=STAND_OFF) + Swirl(
+        "obstacles", towards=noise, reach=_NEAR, stop=STAND_OFF
+    )
+    # these go round robots, as the paper says: round walls they would lead away from the disc
+    to_home = Swirl("teammates", towards="home", away=away, reach=_REACH, stop=STAND_OFF)
+    to_target = Swirl("teammates", towards="target", reach=_REACH, stop=STAND_OFF)
+
+    def round_target(saturation: float) -> Swirl:
+        return Swirl(
+            "target", towards="home", away=away, reach=_REACH, stop=STAND_OFF,
+            saturation=saturation,
+        )  # fmt: skip
 
     wander = 0.6 * noise + avoid + to_noise
     if build:
@@ -63,13 +72,13 @@ def pusher_machine(parameters: Parameters, *, share: str = "") -> StateMachine:
     position = (
         2.0 * (1.0 - c) * (avoid + to_noise + to_home)
         + 0.2 * noise
-        + 1.0 * Swirl("target", **round_target, saturation=0.2)
+        + 1.0 * round_target(0.2)
         + 0.6 * MoveTo("target", dead_zone=STAND_OFF, slow=0.1, repel=STAND_OFF, touch=_TOUCH)
     )
     push = (
         c * (avoid + to_noise + to_target)
         + 0.2 * noise
-        + 0.4 * Swirl("target", **round_target, saturation=1.0)
+        + 0.4 * round_target(1.0)
         + 1.0 * MoveTo("target")
     )
     return StateMachine(

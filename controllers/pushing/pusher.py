@@ -17,6 +17,7 @@ class Pusher:
     Attributes:
         behaviour: States, cues and transitions of the robots.
         percepts: What was perceived in the last step.
+        recovery: From stagnation, or None.
         vector: What the schemas summed up to in the last step (n, 2).
     """
 
@@ -45,7 +46,7 @@ class Pusher:
             recovery: From stagnation; None: as published, without.
         """
         self._fusion = Fusion(n, surroundings, ring_angles)
-        self._recovery = recovery
+        self.recovery = recovery
         machine = pusher_machine(parameters, share="tolerance" if recovery else "")
         self.behaviour = machine.start(n, rng)
         self._top = {"top_speed": top_speed, "top_turn": top_turn}
@@ -64,8 +65,8 @@ class Pusher:
             relative to the robots.
         """
         percepts = dict(self._fusion.percepts(gaze))
-        if self._recovery is not None:
-            percepts["tolerance"] = self._recovery.step(percepts, self.behaviour.state, time)
+        if self.recovery is not None:
+            percepts["tolerance"] = self.recovery.step(percepts, time)
         self.percepts = percepts
         self.vector = self.behaviour.step(percepts, time)
         command = steer(self.vector, gaze.heading, **self._top)

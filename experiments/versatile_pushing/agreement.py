@@ -91,7 +91,7 @@ class _Found:
 
     def metrics(self) -> dict[str, float | int]:
         """The study's numbers."""
-        total = sum(self.counts.values())
+        total = np.sum(list(self.counts.values()), axis=0)
         bearing, away = np.array(self.bearing), np.array(self.range)
         return {
             "looks": self.looks,

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from controllers.perception.arc_objects import ROBOT, ArcObjects, MOVER, Objects
+from controllers.perception.arc_objects import MOVER, ROBOT, ArcObjects, Objects
 from controllers.perception.floor_columns import FloorColumns, Paint
 from experiments.versatile_pushing.worlds import ORANGE, RANGE, TEAM
 from mjmr.geometry import Pinhole

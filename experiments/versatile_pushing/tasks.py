@@ -63,7 +63,9 @@ def run(condition: Mapping[str, Any], seed: int) -> Metrics:
     )
     if condition["failure"] == "stopped":
         robots.faults.add(Fault(kind="dead", robot=0, start=STOPS))
-    simulation = Simulation(world, seed=seed, control_period=PERIOD, dt_max=condition["dt_ms"] / 1000)
+    simulation = Simulation(
+        world, seed=seed, control_period=PERIOD, dt_max=condition["dt_ms"] / 1000
+    )
     watch = Watch(simulation, condition["task"])
     eyes = sight(condition["vision"], robots, task.disc_radius)
     pusher = make_pusher(condition, simulation, robots)
@@ -80,7 +82,7 @@ def run(condition: Mapping[str, Any], seed: int) -> Metrics:
         robots.drive(command)
         turret.aim(pan)
         tally.count(pusher.behaviour.state, dark, t)
-        if watch.finished < np.inf and t >= watch.finished + condition["linger"]:
+        if watch.finished < np.inf:
             break
     simulation.close()
     return metrics(watch, tally, pusher, condition)
@@ -162,5 +164,6 @@ def metrics(watch: Watch, tally: Tally, pusher: Pusher, condition: Mapping[str, 
         "wander": float(tally.ticks[0] / tally.ticks.sum()),
         "push": float(tally.ticks[2] / tally.ticks.sum()),
         "dark_wander": tally.dark_wander_share if condition["failure"] == "camera" else None,
+        "p_changes": pusher.recovery.changes if pusher.recovery else None,
         "switches": int(pusher.behaviour.transitions.sum()),
     }

@@ -106,9 +106,7 @@ def build(
         vision: ``arcs``, ``camera`` or ``both``.
         jitter: Seed of small changes of where robots start.
     """
-    world = World(
-        bounds=[-HALF, -HALF, HALF, HALF], wall_height=WALL_HEIGHT, floor="concrete"
-    )
+    world = World(bounds=[-HALF, -HALF, HALF, HALF], wall_height=WALL_HEIGHT, floor="concrete")
     if task == "transport":
         add_disc(world, LARGE_AT, LARGE, friction_force(weight))
         poses = around(LARGE_AT, robots, Streams(jitter).generator("starts"))

@@ -50,9 +50,7 @@ class Beacon(Sensor):
         check_errors(bearing_noise=bearing_noise, distance_noise=distance_noise)
         self.position = np.array(position, dtype=np.float64)
         if self.position.shape != (2,) or not np.isfinite(self.position).all():
-            raise InvalidInputError(
-                f"a beacon's position is two finite numbers; got {position}"
-            )
+            raise InvalidInputError(f"a beacon's position is two finite numbers; got {position}")
         self.bearing_noise = float(bearing_noise)
         self.distance_noise = float(distance_noise)
 
