@@ -6,7 +6,7 @@ import numpy as np
 
 from controllers.perception.arc_objects import MOVER, ROBOT, ArcObjects, Objects
 from controllers.perception.floor_columns import FloorColumns, Paint
-from experiments.versatile_pushing.worlds import ORANGE, RANGE, TEAM
+from experiments.versatile_pushing.worlds import ARC_NOISE, ORANGE, RANGE, TEAM
 from mjmr.geometry import Pinhole
 from mjmr.group import Group
 from mjmr.robots.markings import TEAM_COLOURS
@@ -23,7 +23,11 @@ class ArcSight:
         """Args: robots: Carry a ``VisualArc`` named ``arc``. disc_radius: Of all discs [m]."""
         self._arc: Any = robots.sensors["arc"]
         self._objects = ArcObjects(
-            robot_radius=RoundPusher.radius, mover_radius=disc_radius, max_range=RANGE, most=MOST
+            robot_radius=RoundPusher.radius,
+            mover_radius=disc_radius,
+            max_range=RANGE,
+            most=MOST,
+            resolution=ARC_NOISE,
         )
 
     def look(self) -> Objects:

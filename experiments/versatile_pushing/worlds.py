@@ -36,6 +36,7 @@ RANGE = 3.0  # m, of the turret's camera
 PERIOD = 0.1  # s, of control, vision and every other sensor
 RING_HEIGHT, RING_RANGE, RING_BEAMS = 0.215, 0.8, 48
 ARC_HEIGHT, ARC_COLUMNS = 0.1, 128
+ARC_NOISE = 0.02  # of a range
 WIDTH, HEIGHT = 160, 120  # px
 TEAM = "blue"
 PAINT = (0.42, 0.58, 0.46, 1.0)  # of zones: too pale to be taken for a thing
@@ -148,7 +149,7 @@ def mount(group: Group, vision: str) -> None:
                 columns=ARC_COLUMNS,
                 max_range=RANGE,
                 rate=1 / PERIOD,
-                proportional_noise=0.02,
+                proportional_noise=ARC_NOISE,
                 noise=0.01,
             ),
             "arc",
