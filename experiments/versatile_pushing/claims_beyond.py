@@ -23,7 +23,7 @@ def beyond() -> list[Claim]:
 def _vision() -> list[Claim]:
     return [
         _agreement(
-            "vision-both", "both_share", Bound(">=", 0.85), "",
+            "vision-both", "both_share", Bound(">=", 0.9), "",
             "objects well inside the limits, same poses: twice those found by both / sum of those "
             "found by each; least of trials", np.min,
         ),
