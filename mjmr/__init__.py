@@ -31,6 +31,7 @@ _choose_gl()
 
 _WHERE = {
     "AiboERS7": "mjmr.robots.aibo_ers7",
+    "Beacon": "mjmr.sensors.beacon",
     "Bumper": "mjmr.sensors.bumper",
     "CableTension": "mjmr.sensors.cable_tension",
     "Camera": "mjmr.sensors.camera",
@@ -61,6 +62,7 @@ _WHERE = {
     "TamiyaTXT1": "mjmr.robots.tamiya_txt1",
     "Team": "mjmr.team",
     "Turret": "mjmr.sensors.turret",
+    "VisualArc": "mjmr.sensors.visual_arc",
     "WheelEncoders": "mjmr.sensors.encoders",
     "World": "mjmr.world",
     "environment": "mjmr.env",

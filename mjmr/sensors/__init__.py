@@ -1,6 +1,7 @@
 """What robots perceive: sampled on schedule, computed when read."""
 
 from mjmr.sensors.base import Sensor
+from mjmr.sensors.beacon import Beacon
 from mjmr.sensors.bumper import Bumper
 from mjmr.sensors.cable_tension import CableTension
 from mjmr.sensors.camera import Camera
@@ -15,8 +16,10 @@ from mjmr.sensors.localizer import Localizer
 from mjmr.sensors.motion_status import MotionStatus
 from mjmr.sensors.pan_tilt import PanTilt
 from mjmr.sensors.rangers import InfraredRanger, Sonar
+from mjmr.sensors.visual_arc import VisualArc
 
 __all__ = [
+    "Beacon",
     "Bumper",
     "CableTension",
     "Camera",
@@ -32,5 +35,6 @@ __all__ = [
     "PanTilt",
     "Sensor",
     "Sonar",
+    "VisualArc",
     "WheelEncoders",
 ]

@@ -1,0 +1,160 @@
+"""What a pusher perceives, in axes of fixed direction: target, home, teammates, obstacles."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from controllers.perception.arc_objects import MOVER, ROBOT, Objects
+from controllers.schemas import Percepts, Things
+from mjmr.errors import InvalidInputError
+from mjmr.geometry import rotate, wrap_angle
+from mjmr.jit import njit
+
+Array = NDArray[np.float64]
+ZONES = ("square", "disc", "outside")
+_SAME = 0.12  # m: a ring point this near to a teammate's surface is that teammate
+_PATIENCE = 1.0  # s: how long a turret looks where it lost a target
+
+
+@dataclass(frozen=True, kw_only=True)
+class Surroundings:
+    """What of the world a pusher is told beforehand.
+
+    Attributes:
+        disc_radius: Of what it pushes, known by its colour [m].
+        robot_radius: [m].
+        zone: Where discs are done, around home: ``square`` (half a side), ``disc`` (radius), or
+            ``outside`` a radius.
+        size: Of the zone [m]; discs count as done a little further in than is demanded.
+    """
+
+    disc_radius: float
+    robot_radius: float
+    zone: str
+    size: float
+
+    def __post_init__(self):
+        if self.zone not in ZONES:
+            raise InvalidInputError(f"a zone is one of {', '.join(ZONES)}; got {self.zone!r}")
+        if not min(self.disc_radius, self.robot_radius, self.size) > 0:
+            raise InvalidInputError(
+                "radii and sizes must be positive; got "
+                f"{self.disc_radius}, {self.robot_radius} and {self.size} m"
+            )
+
+    def done(self, places: Array) -> NDArray[np.bool_]:
+        """Which places (..., 2) relative to home [m] are in the zone."""
+        if self.zone == "square":
+            return np.abs(places).max(axis=-1) < self.size
+        distance = np.hypot(places[..., 0], places[..., 1])
+        return distance < self.size if self.zone == "disc" else distance > self.size
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gaze:
+    """One look of all robots.
+
+    Attributes:
+        objects: In the frames of the turrets.
+        bearing: Of the turrets in fixed axes (n,) [rad], when the look was taken.
+        heading: Of the robots in fixed axes (n,) [rad].
+        home: Bearing relative to the robot and distance (n, 2) [rad, m].
+        ring: Ranges of the obstacle ring (n, b) [m], infinite where it feels nothing.
+    """
+
+    objects: Objects
+    bearing: Array
+    heading: Array
+    home: Array
+    ring: Array
+
+
+class Fusion:
+    """Makes percepts of looks, and remembers where the turrets were last told to look."""
+
+    def __init__(self, n: int, surroundings: Surroundings, ring_angles: Array):
+        """Args: n: Robots. surroundings: Of the world. ring_angles: Of the ring's beams (b,)."""
+        self._known, self._angles = surroundings, np.array(ring_angles)
+        self._last_seen = np.full(n, -np.inf)
+        self._last_bearing = np.zeros(n)
+
+    def percepts(self, gaze: Gaze) -> Percepts:
+        """Percepts for :func:`controllers.pushing.machine.pusher_machine`."""
+        known, objects = self._known, gaze.objects
+        centre = rotate(objects.centre, gaze.bearing[:, None])
+        way = gaze.heading + gaze.home[:, 0]
+        home = gaze.home[:, 1:] * np.column_stack([np.cos(way), np.sin(way)])
+        discs = objects.of(MOVER)
+        with np.errstate(invalid="ignore"):
+            todo = discs & ~known.done(centre - home[:, None])
+        radius = np.full(discs.shape, known.disc_radius)
+        target = Things(centre, radius, todo).nearest()
+        mates = objects.of(ROBOT)
+        places = np.where(mates[..., None], centre, 0.0)
+        teammates = Things(places, np.full(mates.shape, known.robot_radius), mates)
+        points, felt = _nearest_points(
+            gaze.ring, self._angles, gaze.heading, places, mates, known.robot_radius + _SAME
+        )
+        return {
+            "target": target,
+            "home": home,
+            "teammates": teammates,
+            "obstacles": Things(points, np.zeros(felt.shape), felt),
+        }
+
+    def aim(self, percepts: Percepts, vector: Array, heading: Array, time: float) -> Array:
+        """Where the turrets shall look, relative to the robots (n,) [rad].
+
+        At the target; where it was lost, for a moment; else along the way.
+        """
+        target = percepts["target"]
+        assert isinstance(target, Things)
+        seen = target.valid[:, 0]
+        bearing = np.arctan2(target.offset[:, 0, 1], target.offset[:, 0, 0])
+        self._last_seen = np.where(seen, time, self._last_seen)
+        self._last_bearing = np.where(seen, bearing, self._last_bearing)
+        way = np.arctan2(vector[:, 1], vector[:, 0])
+        moving = np.hypot(vector[:, 0], vector[:, 1]) > 0.05
+        recent = time - self._last_seen <= _PATIENCE
+        look = np.where(recent, self._last_bearing, np.where(moving, way, heading))
+        return wrap_angle(look - heading)
+
+
+@njit
+def _nearest_points(ring, angles, heading, mates, seen, same):
+    """Nearest points of separate obstacles (n, k, 2) in fixed axes, and which there are (n, k).
+
+    They are the local minima of the ring's ranges; points on teammates the camera sees are left
+    out.
+    """
+    n, b = ring.shape
+    most = 8
+    points = np.zeros((n, most, 2))
+    felt = np.zeros((n, most), dtype=np.bool_)
+    for i in range(n):
+        count = 0
+        for j in range(b):
+            r = ring[i, j]
+            if not r < np.inf:
+                continue
+            # of a plateau the first one; noise makes more minima of a flat wall, so look wider
+            least = True
+            for step in range(1, 5):
+                if ring[i, (j + step) % b] < r or ring[i, (j - step) % b] <= r:
+                    least = False
+                    break
+            if not least or count == most:
+                continue
+            x = r * np.cos(heading[i] + angles[j])
+            y = r * np.sin(heading[i] + angles[j])
+            known = False
+            for k in range(mates.shape[1]):
+                if seen[i, k] and np.hypot(mates[i, k, 0] - x, mates[i, k, 1] - y) < same:
+                    known = True
+                    break
+            if not known:
+                points[i, count, 0], points[i, count, 1] = x, y
+                felt[i, count] = True
+                count += 1
+    return points, felt
