@@ -157,6 +157,22 @@ def add_disc(spec: "mujoco.MjSpec", name: str, disc: Disc, floor: str) -> None:
     )
 
 
+def let_discs_sleep(spec: "mujoco.MjSpec") -> None:
+    """Leave out discs at rest until something touches them: for ``world.edit``, where many rest.
+
+    A disc that touches nothing that is awake, and moves by less than 0.1 mm/s, is frozen after
+    some steps. Of four robots among 30 discs the physics takes half the time.
+    """
+    import mujoco
+
+    spec.option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_SLEEP)
+    policy = mujoco.mjtSleepPolicy
+    discs = {pair.name.removesuffix("_foot") for pair in spec.pairs if pair.name.endswith("_foot")}
+    for body in spec.worldbody.bodies:
+        # said of the others too: by itself MuJoCo lets all sleep that has no motor
+        body.sleep = policy.mjSLEEP_ALLOWED if body.name in discs else policy.mjSLEEP_NEVER
+
+
 def disc_poses(positions: NDArray[np.float64]) -> NDArray[np.float64]:
     """Poses (k, 7) of discs, position and quaternion, from their joints' positions (k, 4)."""
     half, nil = positions[:, 3] / 2.0, np.zeros(len(positions))

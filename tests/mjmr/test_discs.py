@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mjmr.disc import Disc
+from mjmr.disc import Disc, let_discs_sleep
 from mjmr.errors import InvalidInputError
 from mjmr.recording import Recording
 from mjmr.robots.round_pusher import RoundPusher
@@ -224,6 +224,68 @@ def test_a_snapshot_goes_on_with_the_same_bits():
     once = go()
     simulation.restore(snapshot)
     assert go() == once
+
+
+def shoved(sleep):
+    """A robot shoves a disc into another; two more are out of the way. Simulation and robots."""
+    world = World(bounds=[-5, -5, 5, 5], wall_height=0.3)
+    for x, y in ((0.6, 0.1), (1.5, 0.1), (2.0, 3.0), (-2.0, 3.0)):
+        world.add_disc(x, y, 0.2, 3.0)
+    if sleep:
+        world.edit(let_discs_sleep)
+    robots = world.add_group(RoundPusher, [[0.0, 0.0, 0.0], [-3.0, 3.0, 0.0]])
+    return Simulation(world, control_period=0.1, dt_max=0.01), robots
+
+
+def test_sleeping_discs_wake_when_touched_and_go_as_far():
+    ends, sleeping = [], []
+    for sleep in (False, True):
+        simulation, robots = shoved(sleep)
+        asleep = []
+        simulation.observe(lambda s=simulation, a=asleep: a.append((s.data.tree_asleep >= 0).sum()))
+        for t in simulation.ticks(6.0):
+            robots.drive([[0.5 if t < 4.0 else 0.0, 0.0], [0.0, 0.0]])
+        ends.append(simulation.mover_poses())
+        sleeping.append(asleep)
+    np.testing.assert_allclose(ends[0], ends[1], atol=1e-3)
+    assert ends[1][1, 0] > 1.6
+    assert max(sleeping[0]) == 0
+    # all four soon sleep; while two are pushed the other two do; no robot ever does
+    assert max(sleeping[1][:8]) == 4
+    assert min(sleeping[1][1:]) == 2
+
+
+def test_a_snapshot_with_sleepers_goes_on_with_the_same_bits():
+    simulation, robots = shoved(True)
+
+    def go():
+        for _ in simulation.ticks(1.5):
+            robots.drive([[0.5, 0.1], [0.5, 0.0]])
+        return simulation.mover_poses().tobytes() + simulation.poses_of(robots).tobytes()
+
+    go()
+    snapshot = simulation.snapshot()
+    once, asleep = go(), simulation.data.tree_asleep.copy()
+    assert (asleep >= 0).any()
+    simulation.restore(snapshot)
+    assert go() == once
+    fresh, robots = shoved(True)
+    fresh.restore(snapshot)
+    simulation = fresh
+    assert go() == once
+
+
+def test_rays_meet_discs_that_sleep():
+    world = World(bounds=[-5, -5, 5, 5], wall_height=0.3)
+    world.add_disc(1.5, 0.0, 0.4, FORCE)
+    world.edit(let_discs_sleep)
+    robots = world.add_group(RoundPusher, [[0.0, 0.0, 0.0]])
+    lidar = robots.mount(Lidar(beams=3, field_of_view=0.2, position=(0.0, 0.0, 0.2)))
+    simulation = Simulation(world, control_period=0.1, dt_max=0.01)
+    for _ in simulation.ticks(1.0):
+        pass
+    assert simulation.data.tree_asleep[0] >= 0
+    assert lidar.read()[0, 1] == pytest.approx(1.1, abs=1e-3)
 
 
 def test_discs_that_cannot_be_are_refused():
