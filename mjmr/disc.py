@@ -175,8 +175,11 @@ def let_discs_sleep(spec: "mujoco.MjSpec") -> None:
 
 def disc_poses(positions: NDArray[np.float64]) -> NDArray[np.float64]:
     """Poses (k, 7) of discs, position and quaternion, from their joints' positions (k, 4)."""
-    half, nil = positions[:, 3] / 2.0, np.zeros(len(positions))
-    return np.column_stack([positions[:, :3], np.cos(half), nil, nil, np.sin(half)])
+    poses = np.zeros((len(positions), 7))
+    poses[:, :3] = positions[:, :3]
+    half = positions[:, 3] / 2.0
+    poses[:, 3], poses[:, 6] = np.cos(half), np.sin(half)
+    return poses
 
 
 def disc_positions(poses: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -29,9 +29,14 @@ class PropPlaces:
     def poses(self, data: "mujoco.MjData") -> NDArray[np.float64]:
         """Poses of the movers (k, 7): position, quaternion; a new array."""
         ids = self._bodies
-        poses = np.concatenate([data.xpos[ids], data.xquat[ids]], axis=1)
+        if not len(self._discs):
+            return np.concatenate([data.xpos[ids], data.xquat[ids]], axis=1)
         # MuJoCo computes places of bodies when a step begins: after it they are a step old
-        poses[self._discs] = disc_poses(data.qpos[self._disc_qpos])
+        discs = disc_poses(data.qpos[self._disc_qpos])
+        if not len(self._free):
+            return discs
+        poses = np.concatenate([data.xpos[ids], data.xquat[ids]], axis=1)
+        poses[self._discs] = discs
         return poses
 
     def place(self, data: "mujoco.MjData", poses: NDArray[np.float64]) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from experiments.versatile_pushing.pushing import PERIOD, friction_force
 from mjmr.bench import conditions, interleave, spread
+from mjmr.disc import let_discs_sleep
 from mjmr.errors import MissingGLError
 from mjmr.group import Group
 from mjmr.robots.round_pusher import RoundPusher
@@ -25,8 +26,10 @@ _HOME = np.array([[-0.7, 0.0, np.pi], [0.7, 0.0, 0.0], [0.0, 0.7, 1.57], [0.0, -
 def bench_pushing() -> str:
     """Real-time factors in CPU time, one core; every job in turn."""
     jobs = {
-        f"4 robots, {count} discs, {1e3 * dt:g} ms": chase(count, dt)
-        for dt in (0.01, 0.005)
+        f"4 robots, {count} discs, {1e3 * dt:g} ms{', discs sleep' * sleep}": chase(
+            count, dt, sleep=sleep
+        )
+        for dt, sleep in ((0.01, True), (0.01, False), (0.005, False))
         for count in (10, 30)
     }
     lines = [
@@ -42,10 +45,12 @@ def bench_pushing() -> str:
     return "\n".join([*lines, *(f"  {name}: {spread(f)} x" for name, f in figures.items())])
 
 
-def scene(count: int, dt: float, seed: int = 0) -> tuple[Simulation, Group]:
+def scene(count: int, dt: float, sleep: bool = False, seed: int = 0) -> tuple[Simulation, Group]:
     """Four robots at home and ``count`` small discs of weight 0 in a field of 10 m."""
     rng = np.random.default_rng(seed)
     world = World(bounds=[-HALF, -HALF, HALF, HALF], wall_height=0.3, floor="concrete")
+    if sleep:
+        world.edit(let_discs_sleep)
     places = np.empty((0, 2))
     while len(places) < count:
         place = rng.uniform(-HALF + 0.7, HALF - 0.7, 2)
@@ -58,13 +63,13 @@ def scene(count: int, dt: float, seed: int = 0) -> tuple[Simulation, Group]:
 
 
 def chase(
-    count: int, dt: float, pictures: bool = False, seconds: float = 10.0
+    count: int, dt: float, pictures: bool = False, seconds: float = 10.0, sleep: bool = False
 ) -> Callable[[], float]:
     """A job: every robot heads for a disc of its own for a while, then for the next one.
 
     What it does is told from truth, between the ticks: no sensor, no controller is measured.
     """
-    simulation, robots = scene(count, dt)
+    simulation, robots = scene(count, dt, sleep)
     camera = None
     if pictures:
         camera = robots.mount(Camera(at="camera", width=160, height=120, rate=1 / PERIOD), "eye")

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.geometry import wrap_angle
+from mjmr.jit import njit
 from mjmr.sensors.base import Sensor
 
 if TYPE_CHECKING:
@@ -71,16 +72,16 @@ class Turret(Sensor):
         """
         self._in_simulation()
         group = self._group
-        try:
-            aimed = np.array(np.broadcast_to(np.asarray(pan, dtype=np.float64), group.n))
-        except ValueError:
-            raise InvalidInputError(
-                f"{group.name}: a pan has one angle a robot, shape ({group.n},), or one for all; "
-                f"got {np.shape(pan)}"
-            ) from None
-        bad = np.flatnonzero(~np.isfinite(aimed))
-        if len(bad):
-            names = ", ".join(group.names[i] for i in bad)
+        aimed = np.asarray(pan, dtype=np.float64)
+        if aimed.shape != (group.n,):
+            if aimed.ndim or aimed.size != 1:
+                raise InvalidInputError(
+                    f"{group.name}: a pan has one angle a robot, shape ({group.n},), or one for "
+                    f"all; got {aimed.shape}"
+                )
+            aimed = np.full(group.n, float(aimed))
+        if not np.isfinite(aimed).all():
+            names = ", ".join(group.names[i] for i in np.flatnonzero(~np.isfinite(aimed)))
             raise InvalidInputError(f"a pan must be finite; it is not for {names}")
         self._goal = wrap_angle(aimed)
 
@@ -138,13 +139,14 @@ class Turret(Sensor):
         """Let the set points go towards what was aimed at during the period that begins."""
         assert self._simulation is not None
         time = self._simulation.time
-        at = self.observe(time) if data is None else data.act[self._points]
-        rates = wrap_angle(self._goal - at) / period
-        rates = np.clip(rates, -self._fastest, self._fastest)
-        if data is None:
-            self._motion = at, rates, time
-        else:
-            data.ctrl[self._servos] = rates
+        if data is not None:
+            _turn(
+                data.act, data.ctrl, self._points, self._servos, self._goal, period, self._fastest
+            )
+            return
+        at = self.observe(time)
+        rates = np.clip(wrap_angle(self._goal - at) / period, -self._fastest, self._fastest)
+        self._motion = at, rates, time
 
     def observe(self, time: float) -> Array:
         """Angles now (n,), turns counted."""
@@ -179,3 +181,11 @@ class Turret(Sensor):
             raise InvalidInputError(
                 f"the {self.name} can be used once its group is in a simulation"
             )
+
+
+@njit
+def _turn(act, ctrl, points, servos, goal, period, fastest):
+    """Rates (n,) of the servos' set points towards ``goal`` by the shorter way."""
+    for i in range(goal.shape[0]):
+        way = math.pi - (math.pi - (goal[i] - act[points[i]])) % (2.0 * math.pi)
+        ctrl[servos[i]] = min(max(way / period, -fastest), fastest)
