@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 ZONES = ("square", "disc", "outside")
 _SAME = 0.12  # m: a ring point this near to a teammate's surface is that teammate
 _PATIENCE = 1.0  # s: how long a turret looks where it lost a target
+_SCAN = 1.5  # rad/s: how fast it looks around then
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,13 +72,12 @@ class Gaze:
 
 
 class Fusion:
-    """Makes percepts of looks, and remembers where the turrets were last told to look."""
+    """Makes percepts of looks, and remembers where targets were seen last."""
 
     def __init__(self, n: int, surroundings: Surroundings, ring_angles: Array):
         """Args: n: Robots. surroundings: Of the world. ring_angles: Of the ring's beams (b,)."""
         self._known, self._angles = surroundings, np.array(ring_angles)
-        self._last_seen = np.full(n, -np.inf)
-        self._last_bearing = np.zeros(n)
+        self._seen_at, self._seen_bearing = np.zeros(n), np.zeros(n)
 
     def percepts(self, gaze: Gaze) -> Percepts:
         """Percepts for :func:`controllers.pushing.machine.pusher_machine`."""
@@ -103,22 +103,19 @@ class Fusion:
             "obstacles": Things(points, np.zeros(felt.shape), felt),
         }
 
-    def aim(self, percepts: Percepts, vector: Array, heading: Array, time: float) -> Array:
+    def aim(self, percepts: Percepts, heading: Array, time: float) -> Array:
         """Where the turrets shall look, relative to the robots (n,) [rad].
 
-        At the target; where it was lost, for a moment; else along the way.
+        At the target; where it was lost, for a moment; then round and round.
         """
         target = percepts["target"]
         assert isinstance(target, Things)
         seen = target.valid[:, 0]
         bearing = np.arctan2(target.offset[:, 0, 1], target.offset[:, 0, 0])
-        self._last_seen = np.where(seen, time, self._last_seen)
-        self._last_bearing = np.where(seen, bearing, self._last_bearing)
-        way = np.arctan2(vector[:, 1], vector[:, 0])
-        moving = np.hypot(vector[:, 0], vector[:, 1]) > 0.05
-        recent = time - self._last_seen <= _PATIENCE
-        look = np.where(recent, self._last_bearing, np.where(moving, way, heading))
-        return wrap_angle(look - heading)
+        self._seen_at = np.where(seen, time, self._seen_at)
+        self._seen_bearing = np.where(seen, bearing, self._seen_bearing)
+        since = np.maximum(time - self._seen_at - _PATIENCE, 0.0)
+        return wrap_angle(self._seen_bearing + _SCAN * since - heading)
 
 
 @njit
