@@ -1,8 +1,10 @@
 """Simulation: a World in MuJoCo, advanced between the ticks of a control loop."""
 
+import copy
 import math
 from collections import deque
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import mujoco
@@ -96,6 +98,7 @@ class Simulation(TickedSimulation):
                 )
         self._checks = [d.check for _, d in self._each if isinstance(d, CheckedDrive)]
         self._step_watchers: list[Callable[[], None]] = []
+        self._sleeps = bool(self.model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP)
         self._movers = PropPlaces(self.model, world)
         for group, drive in self._each:
             drive.place(data, group.start)
@@ -163,6 +166,12 @@ class Simulation(TickedSimulation):
         """Call ``watcher`` after every physics step; for meters of contact, which are brief."""
         self._step_watchers.append(watcher)
 
+    def snapshot(self) -> Snapshot:
+        """State now; see :meth:`mjmr.loop.TickedSimulation.snapshot`."""
+        found = super().snapshot()
+        # who sleeps is not in the state vector, and what sleeps is where it last was computed
+        return replace(found, physics=copy.copy(self.data)) if self._sleeps else found
+
     def restore(self, snapshot: Snapshot) -> None:
         """Go back (or forward) to ``snapshot``; also out of a divergence."""
         super().restore(snapshot)
@@ -225,7 +234,7 @@ class Simulation(TickedSimulation):
         self.last_second.keep(self.step * self.timestep)
         self._ticks_done += 1
         if self._ticks_done % 6 == 0:
-            self._history.append(self.snapshot())
+            self._history.append(super().snapshot())
 
     def _divergence(self, wrong: str = "") -> SimulationDivergedError:
         data = self.data
@@ -248,7 +257,10 @@ class Simulation(TickedSimulation):
         mujoco.mj_getState(self.model, self.data, state, _STATE)
         return state
 
-    def _set_physics_state(self, state: Array) -> None:
+    def _set_physics_state(self, state: Any) -> None:
+        if isinstance(state, mujoco.MjData):
+            mujoco.mj_copyData(self.data, self.model, state)
+            return
         mujoco.mj_setState(self.model, self.data, state, _STATE)
         mujoco.mj_forward(self.model, self.data)
         # mj_forward recomputes the warm start; put the stored one back

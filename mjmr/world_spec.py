@@ -159,6 +159,10 @@ def _floor(spec: mujoco.MjSpec, world: "World") -> None:
         pos=[*((low + high) / 2), 0],
         size=[half[0], half[1], 0.1],
         material="floor",
+        # everything that can touch (bit 1) touches the floor, but what has bit 8 in its place: see
+        # mjmr.disc
+        contype=4,
+        conaffinity=1,
         friction=[0.8, 0.005, 0.0005],
         group=0,
     )

@@ -31,7 +31,7 @@ study = Study(
             "task",
             "foraging, transport, construction: the paper's; vision: rays and pictures compared "
             "at the same poses, a third of the duration in each world; stall, held, moved, "
-            "moved-from-rest, wedged: checks of pushing itself",
+            "moved-from-rest, wedged, wedged-anywhere: checks of pushing itself",
             "foraging",
             (
                 "foraging",
@@ -43,6 +43,7 @@ study = Study(
                 "moved",
                 "moved-from-rest",
                 "wedged",
+                "wedged-anywhere",
             ),
         ),
         Parameter("c", "cooperation, 0 to 1", 0.0, least=0.0),

@@ -33,6 +33,7 @@ def pushing_grids(seeds: int, timesteps: Sequence[float] = TIMESTEPS) -> list[Gr
             seeds=seeds,
         ),
         Grid(task="wedged", weight=1, off_normal_deg=OFF_NORMALS, dt_ms=dt, seeds=seeds),
+        Grid(task="wedged-anywhere", weight=1, dt_ms=dt, seeds=4 * seeds),
     ]  # fmt: skip
 
 
@@ -70,6 +71,10 @@ def claims_pushing() -> list[Claim]:
             "push-wedged", "wedged", "way", Bound("<=", 0.4), "m",
             "one robot 60, 67.5, 75 degrees off the normal of a weight of 1, 20 s; way of the "
             "disc, furthest: real of wheels that do not slip sideways",
+        ),
+        _claim(
+            "push-wedged-anywhere", "wedged-anywhere", "way", Bound("<=", 0.4), "m",
+            "the same at angles drawn from 20 to 85 degrees; written when push-wedged had held",
         ),
         Claim(
             id="push-timestep",

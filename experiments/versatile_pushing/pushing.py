@@ -26,6 +26,7 @@ SPARE = 0.6  # of one robot's push that a disc of weight w resists beyond w of t
 ABREAST = 0.5  # m, between robots side by side
 RUN_UP = 0.15  # m, that they drive before they touch the disc
 JITTER = math.radians(3.0)  # by which a seed turns a nominal direction, at most
+WEDGE = (math.radians(20.0), math.radians(85.0))  # off the normal, of robots that wedge anywhere
 SHIFT = 0.03  # m, by which it shifts the robots to the side, at most
 
 
@@ -85,16 +86,16 @@ def wedged(condition: Mapping[str, Any], seed: int) -> Metrics:
 
     The bearing of the point where it touches, and the side it heads off to, are drawn by seed.
     """
-    rng = np.random.default_rng([seed, 2])
-    off = float(rng.choice([-1.0, 1.0])) * math.radians(float(condition["off_normal_deg"]))
-    bearing = float(rng.uniform(-np.pi, np.pi))
-    world = _hall()
-    world.add_disc(0.0, 0.0, RADIUS, friction_force(1))
-    away = RADIUS + RoundPusher.radius + 0.01
-    pose = [-away * math.cos(bearing), -away * math.sin(bearing), bearing + off]
-    robots = world.add_group(RoundPusher, [pose])
-    way = _straight_on(_simulate(world, condition), robots, 20.0)
-    return {"way": float(np.hypot(*(way[-1] - way[0])))}
+    return _wedged(condition, seed, math.radians(float(condition["off_normal_deg"])))
+
+
+def wedged_anywhere(condition: Mapping[str, Any], seed: int) -> Metrics:
+    """The same at an angle drawn by seed, from 20 to 85 degrees.
+
+    Everything is alike in every direction, so that of :func:`wedged` every seed says the same.
+    """
+    low, high = WEDGE
+    return _wedged(condition, seed, float(np.random.default_rng([seed, 5]).uniform(low, high)))
 
 
 TESTS = {
@@ -103,7 +104,21 @@ TESTS = {
     "moved": moved,
     "moved-from-rest": moved_from_rest,
     "wedged": wedged,
+    "wedged-anywhere": wedged_anywhere,
 }
+
+
+def _wedged(condition: Mapping[str, Any], seed: int, off_normal: float) -> Metrics:
+    rng = np.random.default_rng([seed, 2])
+    off = float(rng.choice([-1.0, 1.0])) * off_normal
+    bearing = float(rng.uniform(-np.pi, np.pi))
+    world = _hall()
+    world.add_disc(0.0, 0.0, RADIUS, friction_force(1))
+    away = RADIUS + RoundPusher.radius + 0.01
+    pose = [-away * math.cos(bearing), -away * math.sin(bearing), bearing + off]
+    robots = world.add_group(RoundPusher, [pose])
+    way = _straight_on(_simulate(world, condition), robots, 20.0)
+    return {"way": float(np.hypot(*(way[-1] - way[0])))}
 
 
 def _moved(condition: Mapping[str, Any], seed: int, gap: float) -> Metrics:
@@ -172,7 +187,7 @@ class _PushMeter:
         model = simulation.model
         self._simulation = simulation
         self._rims = {model.geom(f"{name}/rim").id for name in robots.names}
-        self._disc = model.geom(simulation.world.movers[0][0]).id
+        self._disc = model.geom(f"{simulation.world.movers[0][0]}_rim").id
         self._times: list[float] = []
         self._forces: list[Array] = []
         simulation.observe(self._see)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mjmr.disc import Disc
+from mjmr.disc import Disc, let_discs_sleep
 from mjmr.errors import InvalidInputError
 from mjmr.recording import Recording
 from mjmr.robots.round_pusher import RoundPusher
@@ -100,17 +100,52 @@ def test_it_stays_upright_and_on_its_foot_alone():
     _, _, simulation = hall((0.0, 0.0, 0.1))
     start(simulation, (1.0, 0.5), 3.0)
     model, data = simulation.model, simulation.data
-    hull, heights, touched = model.geom("disc0").id, [], []
+    foot, heights, touched = model.geom("disc0_foot").id, [], []
 
     def see():
-        touched.append((data.contact.geom == hull).any())
+        touched.append((data.contact.geom[:, 1] == foot).tolist())
         heights.append(data.body("disc0").xpos[2])
 
     simulation.watch_steps(see)
     run(simulation, 1.0)
-    assert not any(touched)
+    # its foot and the robot's wheels and caster
+    assert all(sum(each) == 1 for each in touched)
+    assert all(len(each) == 4 for each in touched)
     assert np.ptp(heights) < 1e-3
     assert data.body("disc0").xmat[8] == pytest.approx(1.0)
+
+
+def test_a_heap_of_discs_stays_whole():
+    """Robots shove 30 discs about for a minute: none is deep in another, nor thrown away."""
+    rng = np.random.default_rng(1000)
+    world = World(bounds=[-2, -2, 2, 2], wall_height=0.3)
+    places = np.empty((0, 2))
+    while len(places) < 30:
+        place = rng.uniform(-1.8, 1.8, 2)
+        if (np.hypot(*(places - place).T) > 0.205).all() and np.hypot(*place) > 1.0:
+            places = np.vstack([places, place])
+    for x, y in places:
+        world.add_disc(x, y, 0.1, rng.choice([1.8, 7.2]))
+    robots = world.add_group(
+        RoundPusher, [[-0.4, -0.4, 0.0], [0.4, -0.4, 1.0], [0.4, 0.4, 2.0], [-0.4, 0.4, 3.0]]
+    )
+    simulation = Simulation(world, control_period=0.1, dt_max=0.01)
+    data, depths, speeds = simulation.data, [0.0], []
+
+    def see():
+        depths.append(-data.contact.dist.min(initial=0.0))
+        speeds.append(np.abs(data.qvel[: 4 * 30].reshape(30, 4)[:, :3]).max())
+
+    simulation.watch_steps(see)
+    speed = rng.choice([0.5, 0.5, -0.5], (30, 4)).repeat(20, axis=0)
+    rate = rng.uniform(-1.5, 1.5, (30, 4)).repeat(20, axis=0)
+    for k, _ in enumerate(simulation.ticks(60.0)):
+        robots.drive(np.column_stack([speed[k], rate[k]]))
+    gone = np.hypot(*(simulation.mover_poses()[:, :2] - places).T)
+    assert np.median(gone) > 0.1
+    assert max(depths) < 0.008
+    assert max(speeds) < 1.5
+    assert data.warning.number.sum() == 0
 
 
 def test_two_discs_pass_a_push_on():
@@ -191,6 +226,68 @@ def test_a_snapshot_goes_on_with_the_same_bits():
     assert go() == once
 
 
+def shoved(sleep):
+    """A robot shoves a disc into another; two more are out of the way. Simulation and robots."""
+    world = World(bounds=[-5, -5, 5, 5], wall_height=0.3)
+    for x, y in ((0.6, 0.1), (1.5, 0.1), (2.0, 3.0), (-2.0, 3.0)):
+        world.add_disc(x, y, 0.2, 3.0)
+    if sleep:
+        world.edit(let_discs_sleep)
+    robots = world.add_group(RoundPusher, [[0.0, 0.0, 0.0], [-3.0, 3.0, 0.0]])
+    return Simulation(world, control_period=0.1, dt_max=0.01), robots
+
+
+def test_sleeping_discs_wake_when_touched_and_go_as_far():
+    ends, sleeping = [], []
+    for sleep in (False, True):
+        simulation, robots = shoved(sleep)
+        asleep = []
+        simulation.observe(lambda s=simulation, a=asleep: a.append((s.data.tree_asleep >= 0).sum()))
+        for t in simulation.ticks(6.0):
+            robots.drive([[0.5 if t < 4.0 else 0.0, 0.0], [0.0, 0.0]])
+        ends.append(simulation.mover_poses())
+        sleeping.append(asleep)
+    np.testing.assert_allclose(ends[0], ends[1], atol=1e-3)
+    assert ends[1][1, 0] > 1.6
+    assert max(sleeping[0]) == 0
+    # all four soon sleep; while two are pushed the other two do; no robot ever does
+    assert max(sleeping[1][:8]) == 4
+    assert min(sleeping[1][1:]) == 2
+
+
+def test_a_snapshot_with_sleepers_goes_on_with_the_same_bits():
+    simulation, robots = shoved(True)
+
+    def go():
+        for _ in simulation.ticks(1.5):
+            robots.drive([[0.5, 0.1], [0.5, 0.0]])
+        return simulation.mover_poses().tobytes() + simulation.poses_of(robots).tobytes()
+
+    go()
+    snapshot = simulation.snapshot()
+    once, asleep = go(), simulation.data.tree_asleep.copy()
+    assert (asleep >= 0).any()
+    simulation.restore(snapshot)
+    assert go() == once
+    fresh, robots = shoved(True)
+    fresh.restore(snapshot)
+    simulation = fresh
+    assert go() == once
+
+
+def test_rays_meet_discs_that_sleep():
+    world = World(bounds=[-5, -5, 5, 5], wall_height=0.3)
+    world.add_disc(1.5, 0.0, 0.4, FORCE)
+    world.edit(let_discs_sleep)
+    robots = world.add_group(RoundPusher, [[0.0, 0.0, 0.0]])
+    lidar = robots.mount(Lidar(beams=3, field_of_view=0.2, position=(0.0, 0.0, 0.2)))
+    simulation = Simulation(world, control_period=0.1, dt_max=0.01)
+    for _ in simulation.ticks(1.0):
+        pass
+    assert simulation.data.tree_asleep[0] >= 0
+    assert lidar.read()[0, 1] == pytest.approx(1.1, abs=1e-3)
+
+
 def test_discs_that_cannot_be_are_refused():
     world = World(bounds=[-1, -1, 1, 1])
     for name in ("radius", "height", "friction_force", "mass"):
@@ -202,8 +299,8 @@ def test_discs_that_cannot_be_are_refused():
         world.add_disc(np.nan, 0.0, 0.1, 1.0)
     with pytest.raises(InvalidInputError, match=r"must lie within x -0.9 to 0.9"):
         world.add_disc(0.95, 0.0, 0.1, 1.0)
-    with pytest.raises(InvalidInputError, match="higher than 0.008 m"):
-        world.add_disc(0.0, 0.0, 0.1, 1.0, height=0.005)
+    with pytest.raises(InvalidInputError, match="must be higher; got 0.05 m"):
+        world.add_disc(0.0, 0.0, 0.1, 1.0, height=0.05)
     assert not world.props
     with pytest.raises(InvalidInputError, match="none of box, ball, cart, disc"):
         world.add_group(RoundPusher, [[0, 0, 0]], name="disc3")
