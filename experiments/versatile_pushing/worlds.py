@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from mjmr.disc import let_discs_sleep
 from mjmr.group import Group
 from mjmr.randomness import Streams
 from mjmr.robots.round_pusher import RoundPusher
@@ -115,6 +116,7 @@ def build(
         force = SMALL_SHARE * RoundPusher.push_force
         for place in places(task, map_seed):
             add_disc(world, place, SMALL, force)
+        world.edit(let_discs_sleep)  # most lie still: half the time of the physics
         poses = at_home(robots)
     paint_home(world, task)
     group = world.add_group(RoundPusher, poses, name="pusher", team=TEAM)

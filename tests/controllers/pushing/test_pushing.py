@@ -73,9 +73,7 @@ def objects(*things, n=1):
     for k, (what, x, y) in enumerate(things):
         kind[0, k], centre[0, k] = what, (x, y)
     gap = np.hypot(centre[..., 0], centre[..., 1])
-    return Objects(
-        kind=kind, centre=centre, gap=gap, whole=np.ones((n, 16), dtype=bool)
-    )
+    return Objects(kind=kind, centre=centre, gap=gap, whole=np.ones((n, 16), dtype=bool))
 
 
 def gaze(seen, *, heading=0.0, pan=0.0, home=(0.0, 4.0), ring=None):
