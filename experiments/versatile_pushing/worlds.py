@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from experiments.versatile_pushing.pushing import friction_force
 from mjmr.disc import let_discs_sleep
 from mjmr.group import Group
 from mjmr.randomness import Streams
@@ -82,11 +83,6 @@ TASKS = {
     "transport": Task(disc_radius=LARGE, zone="disc", size=GOAL),
     "construction": Task(disc_radius=SMALL, zone="outside", size=NEST),
 }
-
-
-def friction_force(weight: int) -> float:
-    """Floor friction of a disc of weight w, which w + 1 robots can move and w cannot [N]."""
-    return (weight + 0.6) * RoundPusher.push_force
 
 
 def build(
