@@ -5,9 +5,9 @@ from dataclasses import KW_ONLY, dataclass
 import numpy as np
 
 from controllers.schemas import Cue, View
-from controllers.schemas.base import unit
 from controllers.schemas.percepts import Array, Flags
 from mjmr.errors import InvalidInputError
+from mjmr.jit import njit
 
 FLOOR = 0.1  # radii: of p = 0, which exact equality would never let through
 
@@ -47,15 +47,7 @@ class InPosition(Cue):
 
     def offset(self, view: View) -> Array:
         """Lateral offsets (n,) [m]; infinite where the target is not between, or there is none."""
-        home, target = view.vector("home"), view.vector("target")
-        h = unit(-home if self.build else home)
-        along = target[:, 0] * h[:, 0] + target[:, 1] * h[:, 1]
-        across = np.abs(target[:, 0] * h[:, 1] - target[:, 1] * h[:, 0])
-        with np.errstate(invalid="ignore"):
-            between = along > 0
-            if not self.build:
-                between &= np.hypot(*target.T) < np.hypot(*home.T)
-        return np.where(between, across, np.inf)
+        return _offset(view.vector("home"), view.vector("target"), self.build)
 
     def holds(self, view: View, before: Flags) -> Flags:
         """Flags (n,)."""
@@ -63,3 +55,19 @@ class InPosition(Cue):
         enter = np.maximum(p, FLOOR) * self.radius
         leave = (1.5 * p + 0.5) * self.radius
         return self.offset(view) <= np.where(before, leave, enter)
+
+
+@njit
+def _offset(home, target, build):
+    offset = np.full(len(home), np.inf)
+    for i in range(len(home)):
+        away = np.hypot(home[i, 0], home[i, 1])
+        if not away > 0.0:
+            continue
+        sign = -1.0 if build else 1.0
+        x, y = sign * home[i, 0] / away, sign * home[i, 1] / away
+        along = target[i, 0] * x + target[i, 1] * y
+        near = np.hypot(target[i, 0], target[i, 1]) < away
+        if along > 0.0 and (build or near):
+            offset[i] = abs(target[i, 0] * y - target[i, 1] * x)
+    return offset

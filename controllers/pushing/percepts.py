@@ -5,16 +5,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from controllers.perception.arc_objects import MOVER, ROBOT, Objects
+from controllers.perception.arc_objects import MOVER, NOTHING, ROBOT, Objects
 from controllers.schemas import Percepts, Things
 from mjmr.errors import InvalidInputError
-from mjmr.geometry import rotate, wrap_angle
+from mjmr.geometry import wrap_angle
 from mjmr.jit import njit
 
 Array = NDArray[np.float64]
 ZONES = ("square", "disc", "outside")
 _SAME = 0.12  # m: a ring point this near to a teammate's surface is that teammate
 _PATIENCE = 1.0  # s: how long a turret looks where it lost a target
+_SCAN = 1.5  # rad/s: how fast it looks around then
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,13 +44,6 @@ class Surroundings:
                 f"{self.disc_radius}, {self.robot_radius} and {self.size} m"
             )
 
-    def done(self, places: Array) -> NDArray[np.bool_]:
-        """Which places (..., 2) relative to home [m] are in the zone."""
-        if self.zone == "square":
-            return np.abs(places).max(axis=-1) < self.size
-        distance = np.hypot(places[..., 0], places[..., 1])
-        return distance < self.size if self.zone == "disc" else distance > self.size
-
 
 @dataclass(frozen=True, kw_only=True)
 class Gaze:
@@ -71,54 +65,86 @@ class Gaze:
 
 
 class Fusion:
-    """Makes percepts of looks, and remembers where the turrets were last told to look."""
+    """Makes percepts of looks, and remembers where targets were seen last."""
 
     def __init__(self, n: int, surroundings: Surroundings, ring_angles: Array):
         """Args: n: Robots. surroundings: Of the world. ring_angles: Of the ring's beams (b,)."""
         self._known, self._angles = surroundings, np.array(ring_angles)
-        self._last_seen = np.full(n, -np.inf)
-        self._last_bearing = np.zeros(n)
+        self._disc = np.full((n, 1), surroundings.disc_radius)
+        self._seen_at, self._seen_bearing = np.zeros(n), np.zeros(n)
 
     def percepts(self, gaze: Gaze) -> Percepts:
         """Percepts for :func:`controllers.pushing.machine.pusher_machine`."""
         known, objects = self._known, gaze.objects
-        centre = rotate(objects.centre, gaze.bearing[:, None])
-        way = gaze.heading + gaze.home[:, 0]
-        home = gaze.home[:, 1:] * np.column_stack([np.cos(way), np.sin(way)])
-        discs = objects.of(MOVER)
-        with np.errstate(invalid="ignore"):
-            todo = discs & ~known.done(centre - home[:, None])
-        radius = np.full(discs.shape, known.disc_radius)
-        target = Things(centre, radius, todo).nearest()
-        mates = objects.of(ROBOT)
-        places = np.where(mates[..., None], centre, 0.0)
-        teammates = Things(places, np.full(mates.shape, known.robot_radius), mates)
+        home, target, found, centre, mates = _in_fixed_axes(
+            objects.kind, objects.centre, gaze.bearing, gaze.heading, gaze.home, known.disc_radius,
+            ZONES.index(known.zone), known.size,
+        )  # fmt: skip
         points, felt = _nearest_points(
-            gaze.ring, self._angles, gaze.heading, places, mates, known.robot_radius + _SAME
+            gaze.ring, self._angles, gaze.heading, centre, mates, known.robot_radius + _SAME
         )
         return {
-            "target": target,
+            "target": Things(target, self._disc, found),
             "home": home,
-            "teammates": teammates,
+            "teammates": Things(centre, np.full(mates.shape, known.robot_radius), mates),
             "obstacles": Things(points, np.zeros(felt.shape), felt),
         }
 
-    def aim(self, percepts: Percepts, vector: Array, heading: Array, time: float) -> Array:
+    def aim(self, percepts: Percepts, heading: Array, time: float) -> Array:
         """Where the turrets shall look, relative to the robots (n,) [rad].
 
-        At the target; where it was lost, for a moment; else along the way.
+        At the target; where it was lost, for a moment; then round and round.
         """
         target = percepts["target"]
         assert isinstance(target, Things)
         seen = target.valid[:, 0]
         bearing = np.arctan2(target.offset[:, 0, 1], target.offset[:, 0, 0])
-        self._last_seen = np.where(seen, time, self._last_seen)
-        self._last_bearing = np.where(seen, bearing, self._last_bearing)
-        way = np.arctan2(vector[:, 1], vector[:, 0])
-        moving = np.hypot(vector[:, 0], vector[:, 1]) > 0.05
-        recent = time - self._last_seen <= _PATIENCE
-        look = np.where(recent, self._last_bearing, np.where(moving, way, heading))
-        return wrap_angle(look - heading)
+        self._seen_at = np.where(seen, time, self._seen_at)
+        self._seen_bearing = np.where(seen, bearing, self._seen_bearing)
+        since = np.maximum(time - self._seen_at - _PATIENCE, 0.0)
+        return wrap_angle(self._seen_bearing + _SCAN * since - heading)
+
+
+@njit
+def _in_fixed_axes(kind, centre, bearing, heading, report, radius, zone, size):
+    """Home (n, 2), target (n, 1, 2) and whether there is one (n, 1), objects (n, k, 2), robots.
+
+    The target is the disc whose surface is nearest of those that are not where they shall be.
+    """
+    n, k = kind.shape
+    home, target = np.empty((n, 2)), np.zeros((n, 1, 2))
+    found, mates = np.zeros((n, 1), dtype=np.bool_), np.zeros((n, k), dtype=np.bool_)
+    turned = np.zeros((n, k, 2))
+    for i in range(n):
+        way = heading[i] + report[i, 0]
+        home[i, 0], home[i, 1] = report[i, 1] * np.cos(way), report[i, 1] * np.sin(way)
+        c, s = np.cos(bearing[i]), np.sin(bearing[i])
+        best = np.inf
+        for j in range(k):
+            if kind[i, j] == NOTHING:
+                break
+            x = c * centre[i, j, 0] - s * centre[i, j, 1]
+            y = s * centre[i, j, 0] + c * centre[i, j, 1]
+            turned[i, j, 0], turned[i, j, 1] = x, y
+            mates[i, j] = kind[i, j] == ROBOT
+            if kind[i, j] != MOVER:
+                continue
+            if _done(x - home[i, 0], y - home[i, 1], zone, size):
+                continue
+            gap = np.hypot(x, y) - radius
+            if gap < best:
+                best, found[i, 0] = gap, True
+                target[i, 0, 0], target[i, 0, 1] = x, y
+    return home, target, found, turned, mates
+
+
+@njit
+def _done(x, y, zone, size):
+    """Whether a place relative to home is in the zone."""
+    if zone == 0:
+        return max(abs(x), abs(y)) < size
+    distance = np.hypot(x, y)
+    return distance < size if zone == 1 else distance > size
 
 
 @njit

@@ -71,5 +71,5 @@ class Pusher:
         self.vector = self.behaviour.step(percepts, time)
         command = steer(self.vector, gaze.heading, **self._top)
         # the turret turns with the base until the next step
-        pan = self._fusion.aim(percepts, self.vector, gaze.heading, time)
+        pan = self._fusion.aim(percepts, gaze.heading, time)
         return command, pan

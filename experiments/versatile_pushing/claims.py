@@ -278,10 +278,13 @@ def _best_p(table: Table) -> Evidence:
     for weight in (0, 1, 2):
         for robots in range(weight + 1, 5):
             team = table.where(weight=weight, robots=robots)
+            if not team.finished:
+                return Evidence.untestable(f"no trials with w = {weight} and {robots} robots")
             best[weight, robots] = max(
                 100.0 * float(np.mean(part.values("success")))
                 for _, limit in team.split("duration")
                 for _, part in limit.split("p")
+                if part.finished
             )
     worst = min(best, key=lambda k: best[k])
     note = "" if best[worst] == 100.0 else f"least with w = {worst[0]} and {worst[1]} robots"

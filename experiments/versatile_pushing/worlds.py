@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from experiments.versatile_pushing.pushing import friction_force
+from mjmr.disc import let_discs_sleep
 from mjmr.group import Group
 from mjmr.randomness import Streams
 from mjmr.robots.round_pusher import RoundPusher
@@ -83,11 +85,6 @@ TASKS = {
 }
 
 
-def friction_force(weight: int) -> float:
-    """Floor friction of a disc of weight w, which w + 1 robots can move and w cannot [N]."""
-    return (weight + 0.6) * RoundPusher.push_force
-
-
 def build(
     task: str,
     *,
@@ -115,6 +112,7 @@ def build(
         force = SMALL_SHARE * RoundPusher.push_force
         for place in places(task, map_seed):
             add_disc(world, place, SMALL, force)
+        world.edit(let_discs_sleep)  # most lie still: half the time of the physics
         poses = at_home(robots)
     paint_home(world, task)
     group = world.add_group(RoundPusher, poses, name="pusher", team=TEAM)
