@@ -16,6 +16,7 @@ from mjmr.sensors.localizer import Localizer
 from mjmr.sensors.motion_status import MotionStatus
 from mjmr.sensors.pan_tilt import PanTilt
 from mjmr.sensors.rangers import InfraredRanger, Sonar
+from mjmr.sensors.turret import Turret
 from mjmr.sensors.visual_arc import VisualArc
 
 __all__ = [
@@ -35,6 +36,7 @@ __all__ = [
     "PanTilt",
     "Sensor",
     "Sonar",
+    "Turret",
     "VisualArc",
     "WheelEncoders",
 ]

@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,6 +13,8 @@ from mjmr.sensors.mount import carrier_model, site_place
 from mjmr.sensors.range_errors import RangeErrors, fan_angles
 
 if TYPE_CHECKING:
+    import mujoco
+
     from mjmr.group import Group
 
 Array = NDArray[np.float64]
