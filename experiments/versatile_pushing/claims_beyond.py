@@ -97,8 +97,8 @@ def _recovery() -> list[Claim]:
         Claim(
             id="recovery-gain",
             text=_TEXT_RECOVERY,
-            how="2 robots, p = 0 and 4: share of trials done with recovery, 120 s, - without, 60 s, "
-            "lesser one",
+            how="2 robots, p = 0 and 4: share of trials done with recovery, 120 s, - without, "
+            "60 s; lesser gain",
             bound=Bound(">=", 50.0),
             unit="points",
             needs={

@@ -149,6 +149,7 @@ def test_the_camera_tells_where_things_are():
     world.start_at({"pusher": [[-2.0, 0.6, np.pi / 2], [-2.9, 1.5, -0.8]]})
     simulation = Simulation(world, seed=0, control_period=0.1, dt_max=0.01)
     eyes = [sight("arcs", robots, 1.0), CameraSight(robots, 1.0)]
+    looks = []
     for _ in simulation.ticks(0.1):
         looks = [eye.look() for eye in eyes]
     simulation.close()
@@ -176,7 +177,7 @@ def test_every_claim_that_a_size_decides_has_its_trials(size):
         "push_share": 1.0, "way": 1.0, "aside": 0.0,
     }  # fmt: skip
     rows = [
-        Row(condition, seed, "ok", {**metrics, "time_s": 100.0 + 10 * condition["c"] + seed})
+        Row(condition, seed, "ok", {**metrics, "time_s": 100.0 + 10 * float(condition["c"]) + seed})
         for condition, seed in study.trials(size)
     ]
     table = Table(rows, study.parameters)
