@@ -37,6 +37,7 @@ _WHERE = {
     "Compass": "mjmr.sensors.compass",
     "Film": "mjmr.film",
     "Fault": "mjmr.faults",
+    "FloorPatch": "mjmr.sensors.floor_patch",
     "ForceTorque": "mjmr.sensors.force_torque",
     "Group": "mjmr.group",
     "IMU": "mjmr.sensors.imu",
