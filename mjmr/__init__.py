@@ -36,6 +36,7 @@ _WHERE = {
     "Camera": "mjmr.sensors.camera",
     "Compass": "mjmr.sensors.compass",
     "Film": "mjmr.film",
+    "FilmOptions": "mjmr.film_options",
     "Fault": "mjmr.faults",
     "FloorPatch": "mjmr.sensors.floor_patch",
     "ForceTorque": "mjmr.sensors.force_torque",
