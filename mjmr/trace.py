@@ -73,6 +73,10 @@ class Trace:
             self._follow(name, sensor)
         self._messages: list[tuple[float, Array, int, Any, int]] = []
         simulation.message_followers.append(lambda *message: self._messages.append(message))
+        self._lifts: list[tuple[float, Array, Array]] = []
+        simulation.lift_followers.append(
+            lambda robots, poses: self._lifts.append((simulation.time, robots, poses))
+        )
         simulation.observe(self._capture)
 
     def _follow(self, name: str, sensor: Any) -> None:
@@ -133,7 +137,7 @@ class Trace:
             found[f"sensor_{name}_sampled"] = np.array([s[1] for s in samples])
             found[f"sensor_{name}_delivered"] = np.array([s[2] for s in samples])
             found[f"sensor_{name}_values"] = np.array([s[3] for s in samples])
-        return found | self._message_table()
+        return found | self._message_table() | self._lift_table()
 
     def _message_table(self) -> dict[str, np.ndarray]:
         rows = [
@@ -144,6 +148,15 @@ class Trace:
         table = np.concatenate([np.empty((0, len(MESSAGE_COLUMNS))), *rows])
         columns = zip(MESSAGE_COLUMNS.items(), table.T, strict=True)
         return {name: column.astype(dtype) for (name, dtype), column in columns}
+
+    def _lift_table(self) -> dict[str, np.ndarray]:
+        """A row for every robot that was picked up and put down elsewhere."""
+        lifts = self._lifts
+        return {
+            "lift_times": np.concatenate([[], *(np.full(len(r), t) for t, r, _ in lifts)]),
+            "lift_robots": np.concatenate([np.empty(0, np.int64), *(r for _, r, _ in lifts)]),
+            "lift_poses": np.concatenate([np.empty((0, 3)), *(p for _, _, p in lifts)]),
+        }
 
     def _contact_table(self, model: Any, k: int) -> dict[str, np.ndarray]:
         rows = self._contacts
