@@ -56,7 +56,7 @@ def _two_bit(values: ArrayLike) -> Bytes:
     """Remainder modulo x^2 + 1: the parities of the odd and the even bits, as a byte 0..3."""
     v = np.asarray(values, dtype=np.uint8)
     v = (v ^ (v >> 4)) & 0xF
-    return (v ^ (v >> 2)) & 0x3
+    return ((v ^ (v >> 2)) & 0x3).astype(np.uint8)
 
 
 @dataclass(frozen=True)

@@ -142,6 +142,7 @@ class Records:
         least = min(int(min(self.length[robot], FARTHEST)), FARTHEST)
         count = int(self.count[robot])
         # the path's length is for comparison only: of a few, the first without false phases
+        told = b""
         for length in [*range(least, FARTHEST + 1), *range(least)]:
             told = vector + self.codec.encode(count, length, kind=RECORD) + points
             if not self.codec.impostors(told):
