@@ -83,8 +83,11 @@ class KinematicSimulation(TickedSimulation):
 
     def _begin_period(self) -> None:
         team, time, period = self.team, self.time, self.control_period
-        ramps = [g.next_ramp(time, period) for g in team.groups]
         platforms = [g.platform for g in team.groups]
+        ramps = [
+            tuple(p.mistuned(command) for command in g.next_ramp(time, period))
+            for p, g in zip(platforms, team.groups, strict=True)
+        ]
         pairs = list(zip(platforms, ramps, strict=True))
         self._twist = team.stack([p.twist_of(start) for p, (start, _) in pairs])
         self._target = team.stack([p.twist_of(target) for p, (_, target) in pairs])

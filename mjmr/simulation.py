@@ -177,7 +177,8 @@ class Simulation(TickedSimulation):
         time, period, data = self.time, self.control_period, self.data
         for group, drive in self._each:
             start, target = group.next_ramp(time, period)
-            drive.ramp(data, start, target, period)
+            mistuned = group.platform.mistuned
+            drive.ramp(data, mistuned(start), mistuned(target), period)
         for sensor in self.actuated:
             sensor.actuate(data, period)
         if self._carts is not None:

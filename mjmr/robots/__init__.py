@@ -10,6 +10,7 @@ from mjmr.robots.nims import Nims
 from mjmr.robots.pioneer2dx import Pioneer2DX
 from mjmr.robots.soccer_bot import SoccerBot
 from mjmr.robots.tamiya_txt1 import TamiyaTXT1
+from mjmr.robots.tj_pro import TJPro
 
 if TYPE_CHECKING:
     from mjmr.robots.platform import Platform
@@ -21,6 +22,7 @@ PLATFORMS = {
     "pioneer2dx": "mjmr.robots.pioneer2dx:Pioneer2DX",
     "soccer_bot": "mjmr.robots.soccer_bot:SoccerBot",
     "tamiya_txt1": "mjmr.robots.tamiya_txt1:TamiyaTXT1",
+    "tj_pro": "mjmr.robots.tj_pro:TJPro",
 }
 __all__ = [
     "PLATFORMS",
@@ -29,6 +31,7 @@ __all__ = [
     "Nims",
     "Pioneer2DX",
     "SoccerBot",
+    "TJPro",
     "TamiyaTXT1",
     "platform_class",
 ]

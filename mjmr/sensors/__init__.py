@@ -14,6 +14,7 @@ from mjmr.sensors.line_of_sight import LineOfSight
 from mjmr.sensors.localizer import Localizer
 from mjmr.sensors.motion_status import MotionStatus
 from mjmr.sensors.pan_tilt import PanTilt
+from mjmr.sensors.proximity import InfraredProximity
 from mjmr.sensors.rangers import InfraredRanger, Sonar
 
 __all__ = [
@@ -24,6 +25,7 @@ __all__ = [
     "Compass",
     "ForceTorque",
     "IMU",
+    "InfraredProximity",
     "InfraredRanger",
     "Lidar",
     "LineOfSight",
