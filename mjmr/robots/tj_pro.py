@@ -1,4 +1,4 @@
-"""TJPro: a round two-wheel robot on hobby servos, 0.18 m across, 0.8 kg (assets/tj_pro/README.md)."""
+"""TJPro: a round robot on two hobby servos, 0.18 m across, 0.8 kg (assets/tj_pro/README.md)."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -43,7 +43,7 @@ class TJPro(Unicycle):
     braking = 2.0
     wheels = WHEELS
     wheel_radius = 0.035
-    rolling_radius = 0.034837
+    rolling_radius = 0.034677
     track = 0.13
     effective_track = track
     disc_radius = 0.028

@@ -7,6 +7,7 @@ from mjmr.sensors.camera import Camera
 from mjmr.sensors.cart_report import CartReport
 from mjmr.sensors.compass import Compass
 from mjmr.sensors.encoders import WheelEncoders
+from mjmr.sensors.floor_patch import FloorPatch
 from mjmr.sensors.force_torque import ForceTorque
 from mjmr.sensors.imu import IMU
 from mjmr.sensors.lidar import Lidar
@@ -23,6 +24,7 @@ __all__ = [
     "Camera",
     "CartReport",
     "Compass",
+    "FloorPatch",
     "ForceTorque",
     "IMU",
     "InfraredProximity",

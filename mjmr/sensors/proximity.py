@@ -61,7 +61,7 @@ class InfraredProximity(InfraredRanger):
     def read(self) -> Any:
         """Newest poll delivered by now, shape (n, k): which detectors were tripped.
 
-        None before the first delivery.
+        Nothing has tripped before the first delivery.
         """
         return super().read()
 
