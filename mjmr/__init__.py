@@ -32,6 +32,8 @@ _choose_gl()
 _WHERE = {
     "AiboERS7": "mjmr.robots.aibo_ers7",
     "Bumper": "mjmr.sensors.bumper",
+    "ByteRadio": "mjmr.byte_radio",
+    "ByteTiming": "mjmr.byte_channel",
     "CableTension": "mjmr.sensors.cable_tension",
     "Camera": "mjmr.sensors.camera",
     "Compass": "mjmr.sensors.compass",

@@ -18,6 +18,7 @@ from mjmr.team import Team
 from mjmr.watch import announce
 
 if TYPE_CHECKING:
+    from mjmr.byte_radio import ByteRadio
     from mjmr.group import Group
     from mjmr.radio import Radio
     from mjmr.sensors.base import Sensor
@@ -132,7 +133,7 @@ class TickedSimulation(ABC):
         self.caption: Callable[[], str] = str
         self.diverged = False
         self.actuated: list[Actuated] = []
-        self.radios: dict[str, Radio] = {}
+        self.radios: dict[str, Radio | ByteRadio] = {}
         self.message_followers: list[Callable[[float, Array, int, Any, int], None]] = []
         self.lift_followers: list[Callable[[Any, Array], None]] = []
         self._observers: list[Callable[[], None]] = []
@@ -174,7 +175,7 @@ class TickedSimulation(ABC):
             fresh[key] = check_note(key, value, self.team.n)
         self.notes = fresh
 
-    def add_radio(self, radio: "Radio") -> None:
+    def add_radio(self, radio: "Radio | ByteRadio") -> None:
         """Make a radio part of snapshots; it calls this itself.
 
         Raises:

@@ -1,0 +1,134 @@
+"""The two state machines, as data: what a robot does next, by what it perceives.
+
+A robot is in one state for one program loop. At the start of the next loop the first transition of
+its state whose cue is there is taken, else it stays; then the state's action is done. The compiled
+team (:mod:`controllers.scouting.team`) runs these very tables, and documents draw them.
+
+Source: MacKunis and Raviv 2003, figures 2.1 and 2.2 and sections 2.2, 3.2 and 3.4.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from controllers.scouting.behaviour import Behaviour
+
+STATES = (
+    "wait", "search", "transmit", "align", "seek", "spiral", "avoid", "back", "turn", "report",
+    "done",
+)  # fmt: skip
+WAIT, SEARCH, TRANSMIT, ALIGN, SEEK, SPIRAL, AVOID, BACK, TURN, REPORT, DONE = range(11)
+
+CUES = (
+    "always", "bumped", "sees goal", "blocked", "clear", "off course", "aligned", "at vector",
+    "at nest", "may leave", "spiral ended",
+)  # fmt: skip
+ALWAYS, BUMPED, SEES_GOAL, BLOCKED, CLEAR, OFF_COURSE, ALIGNED, AT_VECTOR, AT_NEST, MAY_LEAVE, \
+    SPIRAL_ENDED = range(11)  # fmt: skip
+
+ACTIONS = {
+    "wait": "listen",
+    "search": "forward a unit, or a random turn",
+    "transmit": "send the vector, without end",
+    "align": "rotate to the course",
+    "seek": "forward a unit",
+    "spiral": "forward a unit, or turn the corner",
+    "avoid": "rotate away a step",
+    "back": "back up a unit",
+    "turn": "rotate away from the side hit",
+    "report": "send what it found",
+    "done": "rest",
+}
+
+
+class Transition(NamedTuple):
+    """From a state, on a cue, to a state; by name."""
+
+    state: str
+    cue: str
+    to: str
+
+
+class Machine(NamedTuple):
+    """A state machine: name, initial state, transitions in order of priority in each state."""
+
+    name: str
+    initial: str
+    transitions: tuple[Transition, ...]
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """States that occur, in the order of :data:`STATES`."""
+        used = (
+            {self.initial} | {t.state for t in self.transitions} | {t.to for t in self.transitions}
+        )
+        return tuple(s for s in STATES if s in used)
+
+    def mermaid(self) -> str:
+        """The diagram in Mermaid's language; numbers are priorities within a state."""
+        lines = ["stateDiagram-v2", f"    [*] --> {self.initial}"]
+        lines += [f"    {s}: {s} ({ACTIONS[s]})" for s in self.states]
+        rank: dict[str, int] = {}
+        for t in self.transitions:
+            rank[t.state] = rank.get(t.state, 0) + 1
+            lines.append(f"    {t.state} --> {t.to}: {rank[t.state]} {t.cue}")
+        return "\n".join(lines)
+
+
+def _machine(name: str, initial: str, *rows: tuple[str, str]) -> Machine:
+    """Rows are (state, "cue > state, cue > state, ...")."""
+    found = []
+    for state, told in rows:
+        for step in told.split(", "):
+            cue, to = step.split(" > ")
+            found.append(Transition(state, cue, to))
+    return Machine(name, initial, tuple(found))
+
+
+def scout(behaviour: Behaviour) -> Machine:
+    """The scout's machine. It reports a goal once."""
+    after = {"search": "search", "stop": "done"}[behaviour.scout_after]
+    return _machine(
+        "scout",
+        "search",
+        ("search", "bumped > back, sees goal > transmit, blocked > avoid"),
+        ("avoid", "bumped > back, sees goal > transmit, clear > search"),
+        ("back", "always > turn"),
+        ("turn", "sees goal > transmit, blocked > avoid, always > search"),
+        ("transmit", f"always > {after}"),
+    )
+
+
+def worker(behaviour: Behaviour) -> Machine:
+    """The worker's machine. On its way home it no longer looks for the goal."""
+    after = {"home": "align", "stop": "done"}[behaviour.after_goal]
+    home = ", at nest > done" if behaviour.after_goal == "home" else ""
+    return _machine(
+        "worker",
+        "wait",
+        ("wait", "may leave > align"),
+        ("align", "sees goal > report, aligned > seek"),
+        (
+            "seek",
+            f"bumped > back, sees goal > report{home}, blocked > avoid, at vector > spiral, "
+            "off course > align",
+        ),
+        ("avoid", "bumped > back, sees goal > report, off course > align, clear > seek"),
+        ("back", "always > turn"),
+        ("turn", "sees goal > report, blocked > avoid, always > seek"),
+        ("spiral", "bumped > back, sees goal > report, blocked > avoid, spiral ended > align"),
+        ("report", f"always > {after}"),
+    )
+
+
+def table(machine: Machine) -> NDArray[np.int64]:
+    """Transitions as numbers: shape (states, most transitions of a state, 2): cue, state; or -1."""
+    rows: list[list[tuple[int, int]]] = [[] for _ in STATES]
+    for t in machine.transitions:
+        rows[STATES.index(t.state)].append((CUES.index(t.cue), STATES.index(t.to)))
+    found = np.full((len(STATES), 8, 2), -1, dtype=np.int64)
+    for state, row in enumerate(rows):
+        for k, pair in enumerate(row):
+            found[state, k] = pair
+    return found
