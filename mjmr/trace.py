@@ -73,10 +73,6 @@ class Trace:
             self._follow(name, sensor)
         self._messages: list[tuple[float, Array, int, Any, int]] = []
         simulation.message_followers.append(lambda *message: self._messages.append(message))
-        self._lifts: list[tuple[float, Array, Array]] = []
-        simulation.lift_followers.append(
-            lambda robots, poses: self._lifts.append((simulation.time, robots, poses))
-        )
         simulation.observe(self._capture)
 
     def _follow(self, name: str, sensor: Any) -> None:
@@ -151,11 +147,11 @@ class Trace:
 
     def _lift_table(self) -> dict[str, np.ndarray]:
         """A row for every robot that was picked up and put down elsewhere."""
-        lifts = self._lifts
+        lifts = self.recording.lifts
         return {
-            "lift_times": np.concatenate([[], *(np.full(len(r), t) for t, r, _ in lifts)]),
-            "lift_robots": np.concatenate([np.empty(0, np.int64), *(r for _, r, _ in lifts)]),
-            "lift_poses": np.concatenate([np.empty((0, 3)), *(p for _, _, p in lifts)]),
+            "lift_times": np.array([time for time, _, _ in lifts], dtype=np.float64),
+            "lift_robots": np.array([robot for _, robot, _ in lifts], dtype=np.int64),
+            "lift_poses": np.array([pose for _, _, pose in lifts]).reshape(-1, 3),
         }
 
     def _contact_table(self, model: Any, k: int) -> dict[str, np.ndarray]:

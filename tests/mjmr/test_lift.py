@@ -5,7 +5,10 @@ import pytest
 
 from controllers.legged.ers7_gaits import ERS7_TROT
 from controllers.legged.motion import AiboMotion
+from mjmr import replay
 from mjmr.errors import InvalidInputError, LiftError
+from mjmr.geometry import Pinhole, look_at
+from mjmr.overlay import draw_trails
 from mjmr.robots.aibo_ers7 import AiboERS7
 from mjmr.robots.koala import Koala
 from mjmr.robots.nims import Nims
@@ -249,3 +252,43 @@ def test_traces_have_every_lift(kind, tmp_path):
     rows = parquet.read_table(tmp_path / "a.parquet", filters=[("kind", "==", "lift")])
     assert rows["robot"].to_pylist()[::3] == ["tj_pro2", "tj_pro0", "tj_pro1"]
     assert rows["value"].to_pylist()[:3] == [1.0, -2.0, 2.5]
+
+
+@pytest.mark.parametrize("kind", BOTH)
+@pytest.mark.parametrize("observed", [False, True])
+def test_films_know_who_was_lifted_when(kind, observed, tmp_path):
+    """Lifted between two runs of ticks, and in an observer before or after the recording's."""
+    simulation, robots = build(kind)
+    to = [[1.0, -2.0, 2.5]]
+    if observed:
+        simulation.observe(
+            lambda: simulation.lift(robots, [2], to) if simulation.step == 50 else None
+        )
+    trace = Trace(simulation)
+    go(simulation, robots, 0.5)
+    if not observed:
+        simulation.lift(robots, [2], to)
+    go(simulation, robots, 0.5)
+    footage = trace.recording.footage()
+    # in the picture of 0.5 s it stands here or there
+    first = int(np.argmax(footage.poses[:, 2, 0] > 0.5))
+    assert first == (5 if observed else 6)
+    assert footage.lifts is not None
+    np.testing.assert_array_equal(footage.lifts[:, 2], np.arange(11) >= first)
+    assert not footage.lifts[:, :2].any()
+    trace.save(tmp_path / "a.npz", {"study": "none", "condition": {}, "seed": 0})
+    again = replay.load(tmp_path / "a.npz").footage
+    np.testing.assert_array_equal(again.lifts, footage.lifts)
+
+
+def test_a_trail_is_cut_where_the_robot_was_picked_up():
+    view = Pinhole(np.array([0.0, 0.0, 10.0]), look_at([0, 0, 10.0], [0, 0, 0.0]), 100.0, 100, 100)
+    x = np.array([-3.0, -2.0, 2.0, 3.0])
+    track = np.stack([x, np.zeros(4)], axis=1)[:, None]
+    whole, cut = (np.zeros((100, 100, 3), dtype=np.uint8) for _ in range(2))
+    draw_trails(whole, view, track, [(255, 255, 255)])
+    draw_trails(cut, view, track, [(255, 255, 255)], np.array([[0], [0], [1], [1]]))
+    for picture, middle in ((whole, True), (cut, False)):
+        assert picture[:, 22:28].any()
+        assert picture[:, 72:78].any()
+        assert picture[:, 40:60].any() == middle
