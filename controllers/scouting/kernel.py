@@ -18,7 +18,7 @@ Flags = NDArray[np.bool_]
 # numbers of controllers/scouting/machine.py, equal by test; compiled code takes constants from
 # files that compile
 WAIT, SEARCH, TRANSMIT, ALIGN, SEEK, SPIRAL, AVOID, BACK, TURN, REPORT, DONE = range(11)
-CUE_COUNT = 11
+CUE_COUNT = 13
 VIAS = 4
 TRAIL = 1024
 
@@ -40,7 +40,7 @@ class Memory(NamedTuple):
         told: Whether the scout has reported (n,).
         homing: Whether it drives to the nest (n,).
         corner: Heading the spiral's first side has (n,) [rad].
-        leg: Side of the spiral (n,).
+        leg: Side of the spiral (n,); -1 while there is none.
         left: Units left of that side (n,).
         trail: Where it was after each unit (n, TRAIL, 2) [units], ``marks`` (n,) of them.
         marks: See ``trail``.
@@ -90,7 +90,7 @@ def new_memory(role: Ints) -> Memory:
         role.astype(np.int64), np.where(role == 0, SEARCH, WAIT).astype(np.int64),
         np.zeros((n, 2)), np.zeros(n), np.zeros((n, 2)), np.zeros((n, VIAS, 2)), ints.copy(),
         ints.copy(), ints + 1_000_000, ints + 1, ints + 1, flags.copy(), flags.copy(), np.zeros(n),
-        ints.copy(), np.zeros(n), np.zeros((n, TRAIL, 2)), ints.copy(),
+        ints - 1, np.zeros(n), np.zeros((n, TRAIL, 2)), ints.copy(),
     )  # fmt: skip
 
 
@@ -177,11 +177,14 @@ def step(
         cues[3] = blocked
         cues[4] = not blocked
         cues[5] = not blocked and m.since[i] >= rules.forced and abs(error) > rules.margin
-        cues[6] = abs(error) <= min(rules.tolerance, rules.margin)
+        aligned = abs(error) <= min(rules.tolerance, rules.margin)
+        cues[6] = aligned and not blocked
         cues[7] = near and not m.homing[i]
         cues[8] = near and m.homing[i]
         cues[9] = may_leave[i]
         cues[10] = m.leg[i] >= rules.spiral_legs
+        cues[11] = not blocked and 0 <= m.leg[i] < rules.spiral_legs
+        cues[12] = aligned and blocked
 
         before = m.state[i]
         for k in range(tables.shape[2]):
@@ -210,9 +213,12 @@ def step(
                 m.since[i] = 0
                 m.side[i] = m.hit[i]
             elif state == SPIRAL:
-                m.corner[i] = ahead
-                m.leg[i] = 0
-                m.left[i] = rules.spiral_pitch
+                if m.leg[i] < 0:
+                    m.corner[i] = ahead
+                m.leg[i] += 1  # of a spiral that was blocked: round the next corner
+                m.left[i] = rules.spiral_pitch * (m.leg[i] // 2 + 1)
+            elif before == SPIRAL and state == ALIGN:
+                m.leg[i] = -1
             elif state in (TRANSMIT, REPORT):
                 reports[i] = True
                 m.told[i] = True

@@ -22,10 +22,11 @@ WAIT, SEARCH, TRANSMIT, ALIGN, SEEK, SPIRAL, AVOID, BACK, TURN, REPORT, DONE = r
 
 CUES = (
     "always", "bumped", "sees goal", "blocked", "clear", "off course", "aligned", "at vector",
-    "at nest", "may leave", "spiral ended",
+    "at nest", "may leave", "spiral ended", "spiralling",
+    "in the way",
 )  # fmt: skip
-ALWAYS, BUMPED, SEES_GOAL, BLOCKED, CLEAR, OFF_COURSE, ALIGNED, AT_VECTOR, AT_NEST, MAY_LEAVE, \
-    SPIRAL_ENDED = range(11)  # fmt: skip
+(ALWAYS, BUMPED, SEES_GOAL, BLOCKED, CLEAR, OFF_COURSE, ALIGNED, AT_VECTOR, AT_NEST, MAY_LEAVE,
+ SPIRAL_ENDED, SPIRALLING, IN_THE_WAY) = range(13)  # fmt: skip
 
 ACTIONS = {
     "wait": "listen",
@@ -108,15 +109,19 @@ def worker(behaviour: Behaviour) -> Machine:
         "worker",
         "wait",
         ("wait", "may leave > align"),
-        ("align", "sees goal > report, aligned > seek"),
+        ("align", "sees goal > report, in the way > avoid, aligned > seek"),
         (
             "seek",
             f"bumped > back, sees goal > report{home}, blocked > avoid, at vector > spiral, "
             "off course > align",
         ),
-        ("avoid", "bumped > back, sees goal > report, off course > align, clear > seek"),
+        (
+            "avoid",
+            "bumped > back, sees goal > report, spiralling > spiral, off course > align, "
+            "clear > seek",
+        ),
         ("back", "always > turn"),
-        ("turn", "sees goal > report, blocked > avoid, always > seek"),
+        ("turn", "sees goal > report, blocked > avoid, spiralling > spiral, always > seek"),
         ("spiral", "bumped > back, sees goal > report, blocked > avoid, spiral ended > align"),
         ("report", f"always > {after}"),
     )

@@ -111,6 +111,13 @@ class ScoutTeam:
         self._heard_at[fresh] = self._time
         return valid
 
+    def tell(self, vector: ArrayLike) -> None:
+        """Give every worker a vector (2,) [units] without a message, for tests and ablations."""
+        workers = self.memory.role == 1
+        self.records.goal[workers] = np.asarray(vector, dtype=np.float64)
+        self.records.known[workers] = True
+        self._heard_at[workers] = self._time
+
     @property
     def released(self) -> Flags:
         """Who is to be on the field: scouts, and workers that know a goal and whose turn it is."""

@@ -18,6 +18,7 @@ from experiments.scout_workers.field import Array, Flags, Senses, Tally
 from mjmr.byte_channel import ByteChannel, ByteTiming
 from mjmr.geometry import wrap_angle
 from mjmr.randomness import Streams
+from mjmr.sensors.ambient_field import AmbientField
 
 RADIUS, TRACK = 0.09, 0.13  # m: the TJ Pro's, equal by test
 TRIP = 0.10  # m, of the detectors
@@ -34,7 +35,7 @@ class CompassErrors:
     Args:
         noise: Deviation of every reading [rad].
         drift: Deviation of an error that wanders, cut off at 0.2 Hz [rad].
-        bias: Largest of an error that depends on the place, a wave 2 m long [rad].
+        bias: Bound of an error that depends on the place, in waves about 2 m long [rad].
         step: Readings are whole multiples of it [rad]; 0: not rounded.
     """
 
@@ -46,7 +47,7 @@ class CompassErrors:
 
 EXACT = CompassErrors(noise=0.0, drift=0.0, bias=0.0, step=0.0)
 _KEEP = math.exp(-2 * math.pi * 0.2 * LOOP)
-_WAVE = 2 * math.pi / 2.0  # rad/m
+_WAVES = 2.0  # m, mean length of the bias's waves
 
 
 class PlanarField:
@@ -95,7 +96,7 @@ class PlanarField:
         self._headings = streams.generator("nest")
         self._noise = streams.generator("compass")
         self._drift = self._noise.standard_normal(n)
-        self._toward, self._offset = self._noise.uniform(0, 2 * math.pi, 2)
+        self._room = AmbientField(streams.generator("ambient field"), self.compass.bias, _WAVES)
         self._channel = ByteChannel(n, timing or ByteTiming(), streams.sequence("radio"))
         self._codec = codec or Codec()
         self._way, self._bumps = np.zeros(n), np.zeros(n, dtype=np.int64)
@@ -130,8 +131,7 @@ class PlanarField:
         n, c = self.n, self.compass
         white = self._noise.standard_normal((2, n))
         self._drift = _KEEP * self._drift + math.sqrt(1 - _KEEP**2) * white[1]
-        along = self.pose[:, :2] @ (math.cos(self._toward), math.sin(self._toward))
-        bias = c.bias * np.sin(_WAVE * along + self._offset)
+        bias = self._room.at(self.pose[:, :2])
         heading = self.pose[:, 2] + c.noise * white[0] + c.drift * self._drift + bias
         if c.step > 0:
             heading = np.round(heading / c.step) * c.step
