@@ -35,9 +35,10 @@ def build_arena(size: float, blocks: Array, nest: Array, goal: Array, n: int) ->
 
 def yard_slots(size: float, n: int) -> Array:
     """Where robots wait that are not in the maze (n, 3): rows beside it, out of everybody's way."""
+    assert PITCH > 2 * ROBOT
     rows = int((size - PITCH) / PITCH)
     k = np.arange(n)
-    x = -_WALL - PITCH / 2 - 0.01 - PITCH * (k // rows)
-    y = size - PITCH / 2 - 0.01 - PITCH * (k % rows)
-    assert PITCH > 2 * ROBOT
-    return np.column_stack([x, y, np.zeros(n)])
+    slots = np.zeros((n, 3))
+    slots[:, 0] = -_WALL - PITCH / 2 - 0.01 - PITCH * (k // rows)
+    slots[:, 1] = size - PITCH / 2 - 0.01 - PITCH * (k % rows)
+    return slots

@@ -42,6 +42,7 @@ class PhysicalField:
 
     Attributes:
         n: Robots.
+        time: Simulated [s].
         simulation: Their simulation.
         robots: Their group.
         touches: Control periods that ended with a robot touching another one (n,).
@@ -77,7 +78,7 @@ class PhysicalField:
             codec: Whose checks the radio's receivers make.
             blind: Whose infrared detectors are dead (n,).
         """
-        self.n, self.nest = n, np.array(nest, dtype=np.float64)
+        self.n, self.time, self.nest = n, 0.0, np.array(nest, dtype=np.float64)
         streams, c = Streams(seed), compass or CompassErrors()
         world = build_arena(size, blocks, nest, goal, n)
         self._yard = yard_slots(size, n)
@@ -105,11 +106,6 @@ class PhysicalField:
         self._owners = self._hulls()
         self._loop: Iterator[float] | None = None
         self.simulation.observe(self._measure)
-
-    @property
-    def time(self) -> float:
-        """Simulated [s]."""
-        return self.simulation.time
 
     @property
     def running(self) -> Flags:
@@ -181,6 +177,7 @@ class PhysicalField:
             self.robots.drive(turning if k < TICKS - 1 else ahead)
             next(self._loop, None)
         self._loop = None
+        self.time = self.simulation.time
         self._running |= self._present
 
     def tally(self) -> Tally:
