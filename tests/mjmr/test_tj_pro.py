@@ -316,7 +316,7 @@ def test_bad_thresholds_are_refused(options, words):
 
 
 def test_it_slides_past_the_edge_of_a_block_and_off_others():
-    """Past the edge of a block that is 6 mm in its way, and two that meet: 3 mm deep at the most."""
+    """Past the edge of a block 6 mm in its way, and two that meet: 3 mm deep at the most."""
     world, robots = tjs([[-0.5, 0.284, 0.0], [-2.0, -1.0, 0.3], [-1.7, -0.95, np.pi + 0.2]])
     world.add_box(0.0, 0.0, 0.4, 0.4)
     simulation = Simulation(world, control_period=PERIOD, dt_max=0.01)
