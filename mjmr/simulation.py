@@ -13,9 +13,10 @@ from mjmr.cart_servos import CartServos
 from mjmr.errors import InvalidInputError, SimulationDivergedError
 from mjmr.guard import plausible
 from mjmr.last_second import LastSecond
+from mjmr.lift import Lifter
 from mjmr.loop import Snapshot, TickedSimulation
 from mjmr.robots.platform import CheckedDrive, FramedDrive, TiltedDrive
-from mjmr.start_check import check_start
+from mjmr.start_check import check_start, overlaps
 
 if TYPE_CHECKING:
     from mjmr.group import Group
@@ -95,6 +96,7 @@ class Simulation(TickedSimulation):
                 )
         self._checks = [d.check for _, d in self._each if isinstance(d, CheckedDrive)]
         self._step_watchers: list[Callable[[], None]] = []
+        self._lifters: dict[int, Lifter] = {}
         bodies = [self.model.body(name).id for name, _ in world.movers]
         self._mover_ids = np.array(bodies, dtype=np.int64)
         for group, drive in self._each:
@@ -172,6 +174,18 @@ class Simulation(TickedSimulation):
         self.diverged = False
         self.last_second.clear()
         self.last_second.keep(self.time)
+
+    def _lift(self, group: "Group", rows: Any, poses: Array) -> None:
+        if id(group) not in self._lifters:
+            self._lifters[id(group)] = Lifter(self.model, group, self._drives[id(group)])
+        before = self._physics_state()
+        self._lifters[id(group)].put_down(self.data, rows, poses)
+        self._set_physics_state(self._physics_state())  # contacts are those of the new places
+        if not self.world.overlap:
+            told = overlaps(self.model, self.data, [group.names[row] for row in rows])
+            if told:
+                self._set_physics_state(before)
+                raise InvalidInputError(f"robots are put down where there is room; {told}")
 
     def _begin_period(self) -> None:
         time, period, data = self.time, self.control_period, self.data

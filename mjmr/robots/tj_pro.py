@@ -51,7 +51,7 @@ class TJPro(Unicycle):
     def __init__(
         self,
         *,
-        acceleration: float = 2.0,
+        acceleration: float = 3.2,
         turn_acceleration: float = 30.0,
         servo_gains: ArrayLike = (1.0, 1.0),
     ):
