@@ -43,7 +43,16 @@ study = Study(
             "platform",
             "who is tested; sensors: what robots perceive with",
             "pioneer2dx",
-            ("pioneer2dx", "koala", "aibo_ers7", "tamiya_txt1", "nims", "soccer_bot", "sensors"),
+            (
+                "pioneer2dx",
+                "koala",
+                "aibo_ers7",
+                "tamiya_txt1",
+                "nims",
+                "soccer_bot",
+                "tj_pro",
+                "sensors",
+            ),
         ),
         Parameter(
             "test",

@@ -15,6 +15,7 @@ MODULES = {
     "tamiya_txt1": "txt1",
     "nims": "nims",
     "soccer_bot": "soccer",
+    "tj_pro": "tj_pro",
     "sensors": "sensors",
 }
 

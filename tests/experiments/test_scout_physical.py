@@ -49,7 +49,7 @@ def test_a_loop_forward_is_three_inches_and_one_back_takes_it_away():
     way = (places[:, 0] - start) @ [np.cos(heading), np.sin(heading)]
     assert way[3] - way[0] == pytest.approx(3 * UNIT, abs=1e-4)
     assert way[-1] == pytest.approx(2 * UNIT, abs=1e-3)
-    assert np.abs(np.cross(places[:, 0] - start, [np.cos(heading), np.sin(heading)])).max() < 1e-3
+    assert np.abs((places[:, 0] - start) @ [-np.sin(heading), np.cos(heading)]).max() < 1e-3
     # the control period in which it reverses ends where it began
     assert where.tally().way[0] == pytest.approx(6 * UNIT - 0.1 * UNIT / LOOP, abs=2e-3)
     assert where.time == pytest.approx(8 * LOOP)
