@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError, UnknownNameError
+from mjmr.jit import njit
 
 Bytes = NDArray[np.uint8]
 Ints = NDArray[np.int64]
@@ -57,6 +58,18 @@ def _two_bit(values: ArrayLike) -> Bytes:
     v = np.asarray(values, dtype=np.uint8)
     v = (v ^ (v >> 4)) & 0xF
     return ((v ^ (v >> 2)) & 0x3).astype(np.uint8)
+
+
+@njit
+def _kinds(groups: Bytes, tables: Bytes, found: Ints) -> None:
+    for i in range(len(groups)):
+        a, b, c, d = groups[i, 0], groups[i, 1], groups[i, 2], groups[i, 3]
+        found[i] = -1
+        if a >= 128:
+            continue
+        for kind in range(len(tables)):
+            if tables[kind, 0, a] == b and tables[kind, 1, c] == d:
+                found[i] = kind
 
 
 @dataclass(frozen=True)
@@ -116,11 +129,9 @@ class Codec:
         Args:
             groups: Bytes as they were read, shape (k, 4).
         """
-        g = np.asarray(groups, dtype=np.uint8).reshape(-1, GROUP)
-        found = np.full(len(g), -1, dtype=np.int64)
-        for kind, (first, second) in enumerate(self._tables):
-            good = (g[:, 1] == first[g[:, 0]]) & (g[:, 3] == second[g[:, 2]])
-            found[good & (g[:, 0] < DIRECTIONS)] = kind
+        g = np.ascontiguousarray(groups, dtype=np.uint8).reshape(-1, GROUP)
+        found = np.empty(len(g), dtype=np.int64)
+        _kinds(g, self._tables, found)
         return found
 
     def valid(self, groups: ArrayLike) -> NDArray[np.bool_]:

@@ -135,6 +135,7 @@ def step(
     random: Array,
     action: Array,
     reports: Flags,
+    told: Flags,
 ) -> None:
     """Run one loop of every active robot.
 
@@ -151,13 +152,15 @@ def step(
         random: Uniform numbers, three a robot (n, 3).
         action: Written: units forward (-1, 0, 1) and turn [rad] of the coming loop (n, 2).
         reports: Written: who begins to send in this loop (n,).
+        told: Written: the cues each robot went by (n, CUE_COUNT).
     """
-    cues = np.zeros(CUE_COUNT, dtype=np.bool_)
     for i in range(len(heading)):
         action[i, 0], action[i, 1] = 0.0, 0.0
         reports[i] = False
+        told[i] = False
         if not active[i]:
             continue
+        cues = told[i]
         role = m.role[i]
         ahead = heading[i]
         x, y = _remaining(m, i)

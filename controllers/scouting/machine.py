@@ -2,7 +2,8 @@
 
 A robot is in one state for one program loop. At the start of the next loop the first transition of
 its state whose cue is there is taken, else it stays; then the state's action is done. The compiled
-team (:mod:`controllers.scouting.team`) runs these very tables, and documents draw them.
+team (:mod:`controllers.scouting.team`) runs these very tables; :mod:`controllers.scouting.diagram`
+makes state machines of the schema library of them, which are drawn, and tested to switch alike.
 
 Source: MacKunis and Raviv 2003, figures 2.1 and 2.2 and sections 2.2, 3.2 and 3.4.
 """
@@ -30,17 +31,18 @@ CUES = (
 
 ACTIONS = {
     "wait": "listen",
-    "search": "forward a unit, or a random turn",
-    "transmit": "send the vector, without end",
+    "search": "forward a unit or a random turn",
+    "transmit": "begin to send the vector",
     "align": "rotate to the course",
     "seek": "forward a unit",
-    "spiral": "forward a unit, or turn the corner",
-    "avoid": "rotate away a step",
+    "spiral": "forward a unit or round a corner",
+    "avoid": "rotate away by a step",
     "back": "back up a unit",
     "turn": "rotate away from the side hit",
-    "report": "send what it found",
+    "report": "begin to send what it found",
     "done": "rest",
 }
+"""What is done in each state for one loop."""
 
 
 class Transition(NamedTuple):
@@ -65,16 +67,6 @@ class Machine(NamedTuple):
             {self.initial} | {t.state for t in self.transitions} | {t.to for t in self.transitions}
         )
         return tuple(s for s in STATES if s in used)
-
-    def mermaid(self) -> str:
-        """The diagram in Mermaid's language; numbers are priorities within a state."""
-        lines = ["stateDiagram-v2", f"    [*] --> {self.initial}"]
-        lines += [f"    {s}: {s} ({ACTIONS[s]})" for s in self.states]
-        rank: dict[str, int] = {}
-        for t in self.transitions:
-            rank[t.state] = rank.get(t.state, 0) + 1
-            lines.append(f"    {t.state} --> {t.to}: {rank[t.state]} {t.cue}")
-        return "\n".join(lines)
 
 
 def _machine(name: str, initial: str, *rows: tuple[str, str]) -> Machine:

@@ -49,6 +49,7 @@ class ScoutTeam:
         memory: What each robot remembers of its way.
         action: Units forward and turn [rad] of the coming loop (n, 2).
         reports: Who begins to send in this loop (n,).
+        cues: Which of ``machine.CUES`` each robot went by in this loop (n, cues).
         left_at: When each worker left (n,) [s]; NaN before.
         found_at: When each robot saw the goal (n,) [s]; NaN before.
     """
@@ -90,6 +91,7 @@ class ScoutTeam:
         self._rng = rng
         self.action = np.zeros((n, 2))
         self.reports = np.zeros(n, dtype=bool)
+        self.cues = np.zeros((n, kernel.CUE_COUNT), dtype=bool)
         self.left_at = np.full(n, np.nan)
         self.found_at = np.full(n, np.nan)
         self._heard_at = np.full(n, np.nan)
@@ -170,7 +172,7 @@ class ScoutTeam:
             self._set_out(int(i))
         kernel.step(
             self.memory, self._rules, self._tables, ready, on, ahead, eyes, feelers, seen, random,
-            self.action, self.reports,
+            self.action, self.reports, self.cues,
         )  # fmt: skip
         for i in np.flatnonzero(self.reports):
             self._finish(int(i))
