@@ -103,7 +103,7 @@ class PhysicalField:
         self._way, self._bumps = np.zeros(n), np.zeros(n, dtype=np.int64)
         self.touches = np.zeros(n, dtype=np.int64)
         self._place = self._yard[:, :2].copy()
-        self._owners = self._hulls()
+        self._owners = self._rims()
         self._loop: Iterator[float] | None = None
         self.simulation.observe(self._measure)
 
@@ -205,10 +205,10 @@ class PhysicalField:
         meet = (pairs >= 0).all(axis=1) & (pairs[:, 0] != pairs[:, 1])
         self.touches[np.unique(pairs[meet])] += 1
 
-    def _hulls(self) -> NDArray[np.int64]:
-        """Robot whose hull each geom is, -1 of everything else."""
+    def _rims(self) -> NDArray[np.int64]:
+        """Robot whose rim each geom is, -1 of everything else."""
         model = self.simulation.model
         owners = np.full(model.ngeom, -1)
         for i, prefix in enumerate(self.robots.prefixes):
-            owners[model.geom(f"{prefix}hull").id] = i
+            owners[model.geom(f"{prefix}rim").id] = i
         return owners
