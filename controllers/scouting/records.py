@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from controllers.scouting.coding import (
     FARTHEST,
+    KINDS,
     RECORD,
     VECTOR,
     VIA,
@@ -27,6 +28,7 @@ from controllers.scouting.coding import (
     from_code,
     to_code,
 )
+from mjmr.errors import InvalidInputError
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -35,6 +37,11 @@ Ints = NDArray[np.int64]
 SHORTER = 0.97
 SIMPLIFY = 2.0
 """Via-points are the corners of a path simplified to this [units]: 0.15 m."""
+
+
+def kinds_needed(succession: str) -> int:
+    """Kinds of group that are sent under a rule."""
+    return {"none": 1, "average": RECORD + 1}.get(succession, KINDS)
 
 
 class Records:
@@ -61,6 +68,11 @@ class Records:
         self.codec = codec
         self._average = succession in ("average", "both")
         self._via = succession in ("via", "both")
+        if codec.kinds < kinds_needed(succession):
+            raise InvalidInputError(
+                f"succession {succession} needs {kinds_needed(succession)} kinds of group; the "
+                f"codec has {codec.kinds}"
+            )
         self.known = np.zeros(n, dtype=bool)
         self.goal = np.full((n, 2), np.nan)
         self.count = np.zeros(n, dtype=np.int64)
@@ -133,7 +145,7 @@ class Records:
 
     def _message(self, robot: int) -> bytes:
         vector = self.codec.encode(*to_code(self.goal[robot]))
-        if not (self._average or self._via) or self.codec.kinds == 1:
+        if not (self._average or self._via):
             return vector
         points = b"".join(
             self.codec.encode(*to_code(self.vias[robot, k]), kind=VIA + k)

@@ -32,7 +32,7 @@ from numpy.typing import ArrayLike, NDArray
 from controllers.scouting import kernel, machine
 from controllers.scouting.behaviour import LOOP, UNIT, Behaviour
 from controllers.scouting.coding import Codec
-from controllers.scouting.records import Records
+from controllers.scouting.records import Records, kinds_needed
 from mjmr.errors import InvalidInputError
 
 Array = NDArray[np.float64]
@@ -79,7 +79,8 @@ class ScoutTeam:
             raise InvalidInputError(f"a team has 1 robot or more and 0 to n scouts; {n}, {scouts}")
         self.n, self.scouts = n, scouts
         self.behaviour = behaviour or Behaviour()
-        self.records = Records(n, codec or Codec(), self.behaviour.succession)
+        rule = self.behaviour.succession
+        self.records = Records(n, codec or Codec(kinds=kinds_needed(rule)), rule)
         b = self.behaviour
         self._rules = kernel.Rules(
             b.margin, b.avoid_step, b.bump_turn, int(b.forced), b.tolerance, b.turn_limit,

@@ -14,6 +14,7 @@ from controllers.scouting.machine import WAIT
 from experiments.scout_workers.field import Array, Field, Flags, Senses, Tally
 
 SCOUT_LIMIT, WORKER_LIMIT = 1800.0, 300.0  # s
+RUN_LIMIT = 7200.0  # s, should the nest stay blocked
 FINISHES = ("search", "remove", "park", "home")
 
 
@@ -135,6 +136,8 @@ def run(where: Field, team: ScoutTeam, plan: Plan, *, keep_trails: bool = False)
             break
         idle = (team.state[~scouts] == WAIT).all() and np.isnan(out.left[~scouts]).all()
         if scouts.any() and now >= SCOUT_LIMIT and idle and not team.records.known[~scouts].any():
+            break
+        if now >= RUN_LIMIT:
             break
         where.advance(command)
     out.ended = where.time
