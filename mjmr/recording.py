@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError, MjmrError
-from mjmr.footage import Footage
+from mjmr.footage import Footage, lift_counts
 from mjmr.watch import watching
 
 if TYPE_CHECKING:
@@ -45,11 +45,22 @@ class Recording:
         self._notes: list[dict[str, Array]] = []
         self._captions: list[str] = []
         self._caption = caption
+        self._lifts: list[tuple[float, int, Array]] = []
+        simulation.lift_followers.append(self._follow)
         simulation.observe(self._capture)
 
     def note(self, **arrays: ArrayLike) -> None:
         """Say what to draw from now on; see :meth:`mjmr.loop.TickedSimulation.note`."""
         self._simulation.note(**arrays)
+
+    def _follow(self, robots: NDArray[np.int64], poses: Array) -> None:
+        time = self._simulation.time
+        self._lifts.extend((time, int(i), p) for i, p in zip(robots, poses, strict=True))
+
+    @property
+    def lifts(self) -> list[tuple[float, int, Array]]:
+        """Robots that were lifted: when [s], index in the team, where to (3,)."""
+        return list(self._lifts)
 
     def _capture(self) -> None:
         simulation = self._simulation
@@ -108,6 +119,7 @@ class Recording:
             poses=self.poses,
             notes=list(self._notes),
             captions=list(self._captions),
+            lifts=lift_counts(self.times, self.poses, self._lifts),
         )
 
     def _placed(self, model: Any) -> Array:

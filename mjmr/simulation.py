@@ -15,10 +15,11 @@ from mjmr.cart_servos import CartServos
 from mjmr.errors import InvalidInputError, SimulationDivergedError
 from mjmr.guard import plausible
 from mjmr.last_second import LastSecond
+from mjmr.lift import Lifter
 from mjmr.loop import Snapshot, TickedSimulation
 from mjmr.prop_places import PropPlaces
 from mjmr.robots.platform import CheckedDrive, FramedDrive, TiltedDrive
-from mjmr.start_check import check_start
+from mjmr.start_check import check_start, overlaps
 
 if TYPE_CHECKING:
     from mjmr.group import Group
@@ -98,6 +99,7 @@ class Simulation(TickedSimulation):
                 )
         self._checks = [d.check for _, d in self._each if isinstance(d, CheckedDrive)]
         self._step_watchers: list[Callable[[], None]] = []
+        self._lifters: dict[int, Lifter] = {}
         self._sleeps = bool(self.model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP)
         self._movers = PropPlaces(self.model, world)
         for group, drive in self._each:
@@ -181,11 +183,24 @@ class Simulation(TickedSimulation):
         self.last_second.clear()
         self.last_second.keep(self.time)
 
+    def _lift(self, group: "Group", rows: Any, poses: Array) -> None:
+        if id(group) not in self._lifters:
+            self._lifters[id(group)] = Lifter(self.model, group, self._drives[id(group)])
+        before = self._physics_state()
+        self._lifters[id(group)].put_down(self.data, rows, poses)
+        self._set_physics_state(self._physics_state())  # contacts are those of the new places
+        if not self.world.overlap:
+            told = overlaps(self.model, self.data, [group.names[row] for row in rows])
+            if told:
+                self._set_physics_state(before)
+                raise InvalidInputError(f"robots are put down where there is room; {told}")
+
     def _begin_period(self) -> None:
         time, period, data = self.time, self.control_period, self.data
         for group, drive in self._each:
             start, target = group.next_ramp(time, period)
-            drive.ramp(data, start, target, period)
+            mistuned = group.platform.mistuned
+            drive.ramp(data, mistuned(start), mistuned(target), period)
         for sensor in self.actuated:
             sensor.actuate(data, period)
         if self._carts is not None:

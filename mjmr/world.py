@@ -427,19 +427,33 @@ class World:
                 f"{low[1]:g} to {high[1]:g} m"
             )
 
-    def _check_inside(self, group: Group) -> None:
-        r = group.platform.radius
+    def check_inside(self, group: Group, rows: ArrayLike, poses: ArrayLike) -> None:
+        """Refuse places of robots of a group that are not within the walls.
+
+        Args:
+            group: Whose robots.
+            rows: Their indices in the group (k,).
+            poses: Where they are to be (k, 3), world frame.
+
+        Raises:
+            InvalidInputError: Says who would be outside, and by how much.
+        """
+        r, where = group.platform.radius, np.asarray(poses)[:, :2]
         low, high = self.bounds[:2] + r, self.bounds[2:] - r
-        outside = ((group.start[:, :2] < low) | (group.start[:, :2] > high)).any(axis=1)
-        if outside.any():
-            beyond = np.maximum(low - group.start[:, :2], group.start[:, :2] - high).max(axis=1)
+        beyond = np.maximum(low - where, where - high).max(axis=1)
+        if (beyond > 0).any():
             names = ", ".join(
-                f"{group.names[i]} by {1e3 * beyond[i]:.0f} mm" for i in np.flatnonzero(outside)
+                f"{group.names[row]} by {1e3 * off:.0f} mm"
+                for row, off in zip(np.asarray(rows), beyond, strict=True)
+                if off > 0
             )
             raise InvalidInputError(
                 f"these robots start outside the walls or touch them: {names}; centres must lie "
                 f"within x {low[0]:g} to {high[0]:g} and y {low[1]:g} to {high[1]:g} m"
             )
+
+    def _check_inside(self, group: Group) -> None:
+        self.check_inside(group, range(group.n), group.start)
 
 
 def _rectangle(values: ArrayLike, name: str) -> NDArray[np.float64]:

@@ -51,6 +51,7 @@ study = Study(
                 "nims",
                 "round_pusher",
                 "soccer_bot",
+                "tj_pro",
                 "sensors",
             ),
         ),

@@ -57,6 +57,12 @@ SHOWN = {
         "soccer_bot-acceleration": "acceleration, error",
         "soccer_bot-braking": "braking, error",
     },
+    "tj_pro": {
+        "tj_pro-straight": "3 m straight, error",
+        "tj_pro-turn": "18 turns of 20 degrees, error",
+        "tj_pro-arc": "arc of unequal servos, heading off",
+        "tj_pro-slip": "push on a wall, tyres slipping",
+    },
 }
 
 

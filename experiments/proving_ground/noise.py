@@ -23,6 +23,7 @@ from mjmr.sensors.lidar import Lidar
 from mjmr.sensors.line_of_sight import LineOfSight
 from mjmr.sensors.localizer import Localizer
 from mjmr.sensors.pan_tilt import PanTilt
+from mjmr.sensors.proximity import InfraredProximity
 from mjmr.sensors.rangers import InfraredRanger, Sonar
 from mjmr.simulation import Simulation
 
@@ -90,6 +91,7 @@ _OF: dict[str, Callable[[], list[Sensor]]] = {
     "round_pusher": list,
     "nims": lambda: [CableTension(), ForceTorque(site="package")],
     "soccer_bot": list,
+    "tj_pro": lambda: [InfraredProximity(trip=0.1)],
 }
 
 

@@ -16,6 +16,7 @@ MODULES = {
     "nims": "nims",
     "round_pusher": "round_pusher",
     "soccer_bot": "soccer",
+    "tj_pro": "tj_pro",
     "sensors": "sensors",
 }
 

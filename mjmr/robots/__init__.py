@@ -11,6 +11,7 @@ from mjmr.robots.pioneer2dx import Pioneer2DX
 from mjmr.robots.round_pusher import RoundPusher
 from mjmr.robots.soccer_bot import SoccerBot
 from mjmr.robots.tamiya_txt1 import TamiyaTXT1
+from mjmr.robots.tj_pro import TJPro
 
 if TYPE_CHECKING:
     from mjmr.robots.platform import Platform
@@ -23,6 +24,7 @@ PLATFORMS = {
     "round_pusher": "mjmr.robots.round_pusher:RoundPusher",
     "soccer_bot": "mjmr.robots.soccer_bot:SoccerBot",
     "tamiya_txt1": "mjmr.robots.tamiya_txt1:TamiyaTXT1",
+    "tj_pro": "mjmr.robots.tj_pro:TJPro",
 }
 __all__ = [
     "PLATFORMS",
@@ -32,6 +34,7 @@ __all__ = [
     "Pioneer2DX",
     "RoundPusher",
     "SoccerBot",
+    "TJPro",
     "TamiyaTXT1",
     "platform_class",
 ]
