@@ -38,7 +38,7 @@ class TJPro(Unicycle):
     title = "Mekatronix TJ Pro"
     grade = "C"
     radius = 0.09
-    height = 0.10
+    height = 0.065
     max_twist = (0.18, 2.77)
     braking = 2.0
     wheels = WHEELS
