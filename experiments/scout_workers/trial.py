@@ -192,7 +192,7 @@ def prepare() -> None:
     trial(study.condition(vector="exact"), 0)
 
 
-def _number(value: float) -> float | None:
+def _number(value: Any) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
