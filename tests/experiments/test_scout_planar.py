@@ -4,10 +4,13 @@ import math
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from controllers.scouting import LOOP, UNIT, Behaviour, ScoutTeam
+from experiments.scout_workers.bug2 import bug2
+from experiments.scout_workers.bug2 import of_maze as bug2_of
 from experiments.scout_workers.mazes import maze
 from experiments.scout_workers.planar import (
     EXACT,
@@ -242,3 +245,26 @@ def test_shortest_ways_against_geometry():
     for name in ("m1", "m2", "m3", "m4"):
         m = maze(name)
         assert np.hypot(*(m.goal - m.nest)) - SEEN <= of_maze(name) < 1.3 * 2.7
+
+
+def test_bug2_goes_round_one_block_either_way():
+    nest, goal = np.array([0.3, 1.25]), np.array([2.2, 1.25])
+    free = shapely.box(0, 0, 2.5, 2.5).difference(shapely.box(1.0, 1.05, 1.4, 1.65))
+    left, right = (bug2(free, nest, goal, hand) for hand in (1, -1))
+    straight = 1.9 - SEEN
+    # down 0.2 with the block on its left, or up 0.4 with it on its right, and back
+    assert left == pytest.approx(straight + 2 * 0.2)
+    assert right == pytest.approx(straight + 2 * 0.4)
+    # a block at the lower wall: with the solid on its left it would follow the whole arena
+    free = open_ = shapely.box(0, 0, 2.5, 2.5)
+    free = free.difference(shapely.box(1.0, 0.0, 1.4, 1.65))
+    assert bug2(free, nest, goal, -1) == pytest.approx(straight + 2 * 0.4)
+    assert bug2(free, nest, goal, 1) == pytest.approx(straight - 0.4 + 12.1)
+    assert bug2(open_, nest, goal, 1) == pytest.approx(straight)
+    shut = open_.difference(shapely.box(1.0, 0.0, 1.1, 2.5))
+    assert bug2(shapely.get_parts(shut)[0], nest, goal, 1) == math.inf
+
+
+def test_bug2_is_no_shorter_than_the_shortest():
+    for name in ("m1", "m2", "m3", "m4", "f1", "f2", "f3"):
+        assert all(of_maze(name) <= way < 7 * of_maze(name) for way in bug2_of(name))
