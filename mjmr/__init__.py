@@ -31,6 +31,7 @@ _choose_gl()
 
 _WHERE = {
     "AiboERS7": "mjmr.robots.aibo_ers7",
+    "Beacon": "mjmr.sensors.beacon",
     "Bumper": "mjmr.sensors.bumper",
     "ByteRadio": "mjmr.byte_radio",
     "ByteTiming": "mjmr.byte_channel",
@@ -58,12 +59,15 @@ _WHERE = {
     "Pioneer2DX": "mjmr.robots.pioneer2dx",
     "Radio": "mjmr.radio",
     "Recording": "mjmr.recording",
+    "RoundPusher": "mjmr.robots.round_pusher",
     "Simulation": "mjmr.simulation",
     "SoccerBot": "mjmr.robots.soccer_bot",
     "Sonar": "mjmr.sensors.rangers",
     "TJPro": "mjmr.robots.tj_pro",
     "TamiyaTXT1": "mjmr.robots.tamiya_txt1",
     "Team": "mjmr.team",
+    "Turret": "mjmr.sensors.turret",
+    "VisualArc": "mjmr.sensors.visual_arc",
     "WheelEncoders": "mjmr.sensors.encoders",
     "World": "mjmr.world",
     "environment": "mjmr.env",

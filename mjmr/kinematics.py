@@ -68,7 +68,7 @@ class KinematicSimulation(TickedSimulation):
         rows = []
         for _, prop in self.world.movers:
             yaw = getattr(prop, "yaw", 0.0)
-            z = getattr(prop, "radius", 0.0) or getattr(prop, "height", 0.0) / 2
+            z = getattr(prop, "height", 0.0) / 2 or getattr(prop, "radius", 0.0)
             rows.append([prop.x, prop.y, z, np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2)])
         return np.array(rows, dtype=np.float64).reshape(-1, 7)
 

@@ -74,13 +74,13 @@ class Snapshot:
     Attributes:
         time: Simulated seconds.
         step: Physics steps since the start.
-        physics: State vector of the physics.
+        physics: State of the physics.
         parts: States of groups and sensors.
     """
 
     time: float
     step: int
-    physics: Array
+    physics: Any
     parts: tuple[Any, ...]
 
 

@@ -127,18 +127,18 @@ class Recording:
         import mujoco
 
         from mjmr.cart_servos import CartServos
+        from mjmr.prop_places import PropPlaces
 
         data = mujoco.MjData(model)
         team = self.team
         drives = [(team.rows(g), g.platform.bind(model, g.prefixes)) for g in team.groups]
-        first = [model.joint(name).qposadr[0] for name, _ in self.world.movers]
+        props = PropPlaces(model, self.world)
         carts = CartServos(model, self.world)
-        props = np.array(first, dtype=np.int64).reshape(-1, 1) + np.arange(7)
         positions = np.empty((len(self), model.nq))
         for k, (poses, movers) in enumerate(zip(self._poses, self._movers, strict=True)):
             for rows, drive in drives:
                 drive.place(data, poses[rows])
-            data.qpos[props] = movers
+            props.place(data, movers)
             carts.place(data, self._times[k])
             for sensor, moved in zip(self._simulation.actuated, self._parts[k], strict=True):
                 sensor.place(data, moved)

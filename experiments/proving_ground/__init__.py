@@ -17,7 +17,7 @@ TESTS = (
     "straight", "turn", "circle", "stop", "crowd", "odometry", "odometry-even", "square",
     "unicycle", "unicycle-open", "roll-over", "roll-over-steps", "walk", "get-up", "kick", "roll",
     "move", "pendulum", "tension", "dash", "lidar", "lidar-noise", "sonar", "sonar-thin", "camera",
-    "camera-in-view", "schedule", "noise",
+    "camera-in-view", "schedule", "noise", "push", "aim",
 )
 VARIANTS = (
     "plain", "forward", "reverse", "changing", "left", "right", "front", "back", "slow", "backward",
@@ -49,6 +49,7 @@ study = Study(
                 "aibo_ers7",
                 "tamiya_txt1",
                 "nims",
+                "round_pusher",
                 "soccer_bot",
                 "tj_pro",
                 "sensors",

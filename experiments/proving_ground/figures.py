@@ -40,6 +40,13 @@ SHOWN = {
         "aibo-kick-forward-mean": "kicks forwards, mean",
         "aibo-kick-left-mean": "heads sideways, mean",
     },
+    "round_pusher": {
+        "round_pusher-straight": "5 m straight, error",
+        "round_pusher-turn": "360 degrees in place, error",
+        "round_pusher-push": "push against a wall / stated - 1",
+        "round_pusher-stop-tilt": "tilt in reversing from 0.5 m/s",
+        "round_pusher-aim": "turret off its aim after half a second",
+    },
     "nims": {
         "nims-arrival": "off its goal on arrival",
         "nims-residual-swing": "swing left over",

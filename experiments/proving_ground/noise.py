@@ -88,6 +88,7 @@ _OF: dict[str, Callable[[], list[Sensor]]] = {
     "koala": lambda: [InfraredRanger(), PanTilt()],
     "aibo_ers7": lambda: [InfraredRanger(sites=("ir_head", "ir_chest")), ForceTorque(body="head")],
     "tamiya_txt1": lambda: [Sonar(), PanTilt()],
+    "round_pusher": list,
     "nims": lambda: [CableTension(), ForceTorque(site="package")],
     "soccer_bot": list,
     "tj_pro": lambda: [InfraredProximity(trip=0.1)],

@@ -1,6 +1,7 @@
 """What robots perceive: sampled on schedule, computed when read."""
 
 from mjmr.sensors.base import Sensor
+from mjmr.sensors.beacon import Beacon
 from mjmr.sensors.bumper import Bumper
 from mjmr.sensors.cable_tension import CableTension
 from mjmr.sensors.camera import Camera
@@ -17,8 +18,11 @@ from mjmr.sensors.motion_status import MotionStatus
 from mjmr.sensors.pan_tilt import PanTilt
 from mjmr.sensors.proximity import InfraredProximity
 from mjmr.sensors.rangers import InfraredRanger, Sonar
+from mjmr.sensors.turret import Turret
+from mjmr.sensors.visual_arc import VisualArc
 
 __all__ = [
+    "Beacon",
     "Bumper",
     "CableTension",
     "Camera",
@@ -36,5 +40,7 @@ __all__ = [
     "PanTilt",
     "Sensor",
     "Sonar",
+    "Turret",
+    "VisualArc",
     "WheelEncoders",
 ]
