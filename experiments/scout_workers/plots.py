@@ -90,6 +90,8 @@ def _times(rows: Table, path: Path) -> Path:
                               color=colour, linewidth=2.5,
                               label=metric[:-2] if not k else None)  # fmt: skip
         axes.set_yscale("log")
+        axes.yaxis.set_major_formatter("{x:g}")
+        axes.yaxis.set_minor_formatter("{x:g}")
         axes.set_xticks(range(len(labels)), labels, fontsize=7)
         axes.legend()
     return path
