@@ -8,7 +8,7 @@ from experiments.versatile_pushing.trial import prepare
 from mjmr.bench import conditions, interleave, spread
 
 _CASES = {
-    "foraging, 10 discs, arcs": {"task": "foraging", "duration": 60.0},
+    "foraging, 10 discs, arcs": {"task": "foraging", "duration": 120.0},
     "construction, 30 discs, arcs": {"task": "construction", "b": True, "duration": 60.0},
     "transport, 1 disc, arcs": {
         "task": "transport", "c": 1.0, "weight": 2, "robots": 2, "duration": 60.0,

@@ -7,7 +7,7 @@ from mjmr.film_options import FilmOptions
 from mjmr.recording import record
 from mjmr.study import Study
 
-SECONDS = 100.0
+SECONDS = 130.0
 SPEED = 8.0  # simulated seconds a second, unless asked otherwise
 TRAIL = 15.0  # s
 _SEED = 0

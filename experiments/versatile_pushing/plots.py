@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from experiments.versatile_pushing.sizes import SHORT
+from experiments.versatile_pushing.worlds import HALF, NEST
 from mjmr import statistics
 from mjmr.plot import figure, interval_line
 from mjmr.table import Table
@@ -26,6 +27,9 @@ def plots(table: Table, folder: Path) -> list[Path]:
     foraging = table.where(task="foraging", recovery=False, **_PLAIN)
     if foraging.finished and len(foraging.distinct("c")) == 2:
         written.append(_paired(foraging, folder))
+    nests = table.where(task="construction", b=True, **_PLAIN)
+    if nests.finished:
+        written.append(_ring(nests, folder))
     return written
 
 
@@ -67,4 +71,21 @@ def _paired(rows: Table, folder: Path) -> Path:
         axes.set_xlim(0, top)
         axes.set_ylim(0, top)
         axes.legend()
+    return path
+
+
+def _ring(rows: Table, folder: Path) -> Path:
+    path = folder / "nest.svg"
+    told = rows.values("places")
+    n = len(told)
+    title = f"Construction: where discs are in the end ({n} trials)"
+    with figure(path, title, "x [m]", "y [m]") as axes:
+        for k, text in enumerate(told):
+            places = np.array([spot.split(",") for spot in text.split()], dtype=float)
+            axes.scatter(*places.T, s=10, alpha=1.0 if n == 1 else 0.6, label=f"trial {k + 1}")
+        turn = np.linspace(0, 2 * np.pi, 200)
+        axes.plot(NEST * np.cos(turn), NEST * np.sin(turn), color="0.6", linewidth=1)
+        axes.set_xlim(-HALF, HALF)
+        axes.set_ylim(-HALF, HALF)
+        axes.set_aspect("equal")
     return path

@@ -62,7 +62,10 @@ def _whole(
     return (
         Grid(**FORAGING, map=tuple(range(maps)), c=(0.0, 1.0), duration=LIMIT, seeds=foraging),
         Grid(**CONSTRUCTION, map=tuple(range(nests)), duration=LIMIT, seeds=construction),
-        Grid(**TRANSPORT, **table, weight=1, robots=(2, 3, 4), duration=SHORT),
+        Grid(**TRANSPORT, **table, weight=1, robots=(3, 4), duration=SHORT),
+        Grid(**TRANSPORT, weight=1, robots=2, p=P[:-1], duration=SHORT, seeds=trials),
+        # neither 0 nor 100 %: a share against a bound between wants more trials
+        Grid(**TRANSPORT, weight=1, robots=2, p=P[-1], duration=SHORT, seeds=max(trials, 20)),
         Grid(**TRANSPORT, **table, weight=0, robots=(1, 2, 3, 4), duration=limit),
         Grid(**TRANSPORT, **table, weight=2, robots=(3, 4), duration=limit),
         *few,

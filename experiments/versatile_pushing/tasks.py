@@ -155,7 +155,13 @@ def metrics(watch: Watch, tally: Tally, pusher: Pusher, condition: Mapping[str, 
     finished = watch.finished < np.inf
     radius = TASKS[condition["task"]].disc_radius
     wall = np.abs(watch.places).max(axis=1) > HALF - radius - _ON_WALL
+    ring: Metrics = {"ring_gap_deg": None, "places": None}
+    if condition["task"] == "construction":
+        # where the discs are in the end, for a plot
+        told = " ".join(f"{x:.2f},{y:.2f}" for x, y in watch.places)
+        ring = {"ring_gap_deg": largest_gap(watch.places), "places": told}
     return {
+        **ring,
         "success": bool(finished),
         "share": float(watch.done.mean()),
         "time_s": float(min(watch.finished, condition["duration"])),
@@ -167,3 +173,9 @@ def metrics(watch: Watch, tally: Tally, pusher: Pusher, condition: Mapping[str, 
         "p_changes": pusher.recovery.changes if pusher.recovery else None,
         "switches": int(pusher.behaviour.transitions.sum()),
     }
+
+
+def largest_gap(places: Array) -> float:
+    """Largest angle [deg] between neighbours of places (k, 2), seen from home."""
+    bearings = np.sort(np.arctan2(places[:, 1], places[:, 0]))
+    return float(np.degrees(np.diff(bearings, append=bearings[0] + 2 * np.pi).max()))

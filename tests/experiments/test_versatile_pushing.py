@@ -11,6 +11,7 @@ from controllers.pushing import Parameters, pusher_machine
 from experiments.versatile_pushing import study
 from experiments.versatile_pushing.claims import claims
 from experiments.versatile_pushing.sight import LENS, SKIRT, CameraSight, sight
+from experiments.versatile_pushing.tasks import largest_gap
 from experiments.versatile_pushing.worlds import (
     DISC_HEIGHT,
     HALF,
@@ -111,6 +112,14 @@ def test_maps_depend_on_their_number_alone_and_keep_the_papers_rules():
     assert not np.array_equal(places("foraging", 1000), places("foraging", 1001))
 
 
+def test_the_largest_gap_of_a_ring_is_found_across_the_seam_too():
+    angles = np.radians([170.0, -175.0, -90.0, 0.0, 60.0])
+    places = np.column_stack([np.cos(angles), np.sin(angles)])
+    assert largest_gap(places) == pytest.approx(110.0)
+    turned = np.column_stack([np.cos(angles + 1.3), np.sin(angles + 1.3)])
+    assert largest_gap(turned) == pytest.approx(110.0)
+
+
 def test_robots_start_where_the_paper_says():
     assert np.abs(at_home(4)[:, :2]).max(axis=1) == pytest.approx(HOME)
     poses = around(LARGE_AT, 4, np.random.default_rng(0))
@@ -149,6 +158,7 @@ def test_the_camera_tells_where_things_are():
     world.start_at({"pusher": [[-2.0, 0.6, np.pi / 2], [-2.9, 1.5, -0.8]]})
     simulation = Simulation(world, seed=0, control_period=0.1, dt_max=0.01)
     eyes = [sight("arcs", robots, 1.0), CameraSight(robots, 1.0)]
+    looks = []
     for _ in simulation.ticks(0.1):
         looks = [eye.look() for eye in eyes]
     simulation.close()
@@ -173,10 +183,10 @@ def test_every_claim_that_a_size_decides_has_its_trials(size):
         "success": True, "share": 1.0, "on_wall": 0, "travel_m": 0.1, "dark_wander": 1.0,
         "both_share": 1.0, "bearing_rms_deg": 1.0, "range_median_pct": 1.0,
         "near_range_rms_m": 0.01, "error_pct": 0.0, "creep_mm": 0.0, "arrival_mm": 0.0,
-        "push_share": 1.0, "way": 1.0, "aside": 0.0,
+        "ring_gap_deg": 40.0, "push_share": 1.0, "way": 1.0, "aside": 0.0,
     }  # fmt: skip
     rows = [
-        Row(condition, seed, "ok", {**metrics, "time_s": 100.0 + 10 * condition["c"] + seed})
+        Row(condition, seed, "ok", {**metrics, "time_s": 100.0 + 10 * float(condition["c"]) + seed})
         for condition, seed in study.trials(size)
     ]
     table = Table(rows, study.parameters)
