@@ -1,49 +1,60 @@
-"""Speed of the study's runs: everything included, one core, by CPU time."""
+"""Speed: teams in MuJoCo and on the plane, and the radio of sixty receivers."""
 
 import time
 from collections.abc import Callable
 
-from controllers.scouting import UNIT, Behaviour, ScoutTeam
-from experiments.scout_workers.mazes import maze
-from experiments.scout_workers.physical import PhysicalField
-from experiments.scout_workers.planar import PlanarField
-from experiments.scout_workers.run import Plan, run
-from mjmr.bench import conditions, interleave, spread
-from mjmr.randomness import Streams
+import numpy as np
 
-_SEED = 1001
+from experiments.scout_workers import study
+from experiments.scout_workers.run import run
+from experiments.scout_workers.trial import build
+from mjmr.bench import conditions, interleave, spread
+from mjmr.byte_channel import ByteChannel, ByteTiming
+
+_SEEDS = iter(range(10_000, 20_000))
 
 
 def bench() -> str:
-    """Measure; returns the table."""
-    cases = {
-        "physical, scout and worker": (PhysicalField, 2),
-        "physical, 60 workers in turn": (PhysicalField, 60),
-        "planar, scout and worker": (PlanarField, 2),
-        "planar, 60 workers in turn": (PlanarField, 60),
+    """Simulated seconds a CPU second, one core; every job in turn."""
+    jobs = {
+        "2 robots, planar": _team("planar", 2),
+        "60 robots, planar": _team("planar", 60),
+        "2 robots, MuJoCo": _team("physical", 2),
+        "60 robots, MuJoCo": _team("physical", 60),
+        "radio alone, 60 receivers, jitter and errors": _radio,
     }
-    jobs = {name: _job(*case) for name, case in cases.items()}
-    found = interleave(jobs, rounds=3)
-    lines = [
-        conditions(),
-        "simulated s per s of CPU time, all included, one core, median [lowest, highest]:",
-    ]
-    return "\n".join(lines + [f"  {name:29s} {spread(f)}" for name, f in found.items()])
+    figures = interleave(jobs, rounds=3)
+    lines = [conditions(), "simulated seconds a CPU second, median [lowest, highest]:"]
+    return "\n".join([*lines, *(f"  {name}: {spread(f)} x" for name, f in figures.items())])
 
 
-def _job(kind: type[PhysicalField] | type[PlanarField], n: int) -> Callable[[], float]:
-    """A run in maze m3; more than two robots are all workers that were told where the goal is."""
-    m = maze("m3")
-    scouts = 1 if n == 2 else 0
+def _team(mode: str, n: int) -> Callable[[], float]:
+    """Workers that know the vector leave one after the other: nobody waits for a scout."""
 
-    def job() -> float:
-        before = time.process_time()
-        field = kind(n, seed=_SEED, size=m.size, blocks=m.blocks, nest=m.nest, goal=m.goal)
-        team = ScoutTeam(
-            n, scouts=scouts, rng=Streams(_SEED).generator("team"), behaviour=Behaviour(forced=4)
+    def measure() -> float:
+        condition = study.condition(
+            mode=mode,
+            maze="m3",
+            experiment="scaling",
+            robots=n,
+            forced=4,
+            finish="remove",
+            vector="exact",
         )
-        told = None if scouts else (m.goal - m.nest) / UNIT
-        ended = run(field, team, Plan(told=told)).ended
-        return ended / (time.process_time() - before)
+        field, team, plan = build(condition, next(_SEEDS))
+        start = time.process_time()
+        run(field, team, plan)
+        return field.time / (time.process_time() - start)
 
-    return job
+    return measure
+
+
+def _radio() -> float:
+    sequence = np.random.SeedSequence(next(_SEEDS))
+    timing = ByteTiming(jitter=0.0002, bit_error=0.01)
+    channel = ByteChannel(60, timing, sequence)
+    channel.transmit(0, bytes([1, 2, 3, 4]), 0.0)
+    start = time.process_time()
+    for k in range(1, 401):
+        channel.listen(0.5 * k)
+    return 200.0 / (time.process_time() - start)

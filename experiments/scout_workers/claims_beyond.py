@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from experiments.scout_workers.evidence import PLAIN, successes
+from experiments.scout_workers.evidence import PLAIN, median_of, successes
 from experiments.scout_workers.sizes import BEST, CHOSEN, FRESH
 from mjmr.claims import Bound, Claim
 
@@ -31,6 +31,14 @@ def beyond() -> list[Claim]:
                 evaluate=successes,
             )
             for suffix, names in (("", CHOSEN), ("-fresh", FRESH))
+        ),
+        Claim(
+            id="bug2",
+            text="not in the paper: against Bug2 with perfect senses and the better of its hands",
+            how="m1 to m4: path of workers that arrive / that of Bug2, median",
+            bound=Bound("<=", 1.3),
+            needs={**_MAZE, "maze": CHOSEN},
+            evaluate=median_of("over_bug2"),
         ),
         Claim(
             id="wall-passed",

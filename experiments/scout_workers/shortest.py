@@ -30,7 +30,7 @@ def shortest(size: float, blocks: np.ndarray, nest: np.ndarray, goal: np.ndarray
     graph = nx.Graph()
     pairs = list(combinations(points, 2))
     lines = shapely.linestrings(np.array(pairs))
-    free = ~shapely.intersects(solid, lines)
+    free = ~np.asarray(shapely.intersects(solid, lines))
     graph.add_weighted_edges_from(
         (p, q, float(np.hypot(p[0] - q[0], p[1] - q[1])))
         for (p, q), clear in zip(pairs, free, strict=True)

@@ -14,13 +14,16 @@ SECONDS = 8.0
 BLOCKS, BLOCK_SECONDS, LISTENERS = 40, 20.0, 100
 
 
-def timing(given: Mapping[str, Any], **errors: float) -> ByteTiming:
+def timing(
+    given: Mapping[str, Any], *, bit_error: float = 0.0, byte_error: float = 0.0
+) -> ByteTiming:
     """Clocks of a condition."""
     return ByteTiming(
         spacing=given["spacing_ms"] / 1000,
         pause=given["pause_ms"] / 1000,
         jitter=given["jitter_ms"] / 1000,
-        **errors,
+        bit_error=bit_error,
+        byte_error=byte_error,
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from controllers.scouting import UNIT, Behaviour, Codec, ScoutTeam
 from controllers.scouting.records import kinds_needed
+from experiments.scout_workers import bug2
 from experiments.scout_workers.field import Array, Field
 from experiments.scout_workers.mazes import maze
 from experiments.scout_workers.planar import EXACT, CompassErrors
@@ -148,7 +149,11 @@ def pair(given: Given, seed: int) -> Metrics:
     out, metrics = _run(given, seed)
     last = given["robots"] - 1
     way = out.way_at[last] / of_maze(given["maze"])
+    hands = bug2.of_maze(given["maze"])
     return metrics | {
+        "over_bug2": _number(out.way_at[last] / min(hands)),
+        "bug2_ratio": min(hands) / of_maze(given["maze"]),
+        "bug2_other_ratio": max(hands) / of_maze(given["maze"]),
         "success": bool(np.isfinite(out.found[last])),
         "worker_s": _number(out.found_after[last]),
         "path_ratio": _number(way),
@@ -186,13 +191,17 @@ def scaling(given: Given, seed: int) -> Metrics:
 
 
 def prepare() -> None:
-    """Compile what the trials need."""
+    """Compile what the trials need: a run on the plane, and a moment in MuJoCo."""
     from experiments.scout_workers import study
 
     trial(study.condition(vector="exact"), 0)
+    field, team, _ = build(study.condition(mode="physical"), 0)
+    field.put_down(0)
+    for _ in range(4):
+        field.advance(team.step(field.time, *field.sense(), active=field.running))
 
 
-def _number(value: float) -> float | None:
+def _number(value: Any) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
