@@ -131,6 +131,7 @@ def _recovery() -> list[Claim]:
 
 
 def _spare(table: Table) -> Evidence:
+    table.values("success")  # says so if there are no trials
     shares = [100.0 * float(np.mean(part.values("success"))) for _, part in table.split("weight")]
     return Evidence(min(shares), n=len(table))
 
@@ -141,6 +142,7 @@ def _success(table: Table) -> Evidence:
 
 
 def _least_share(table: Table) -> Evidence:
+    table.values("success")
     shares = [
         100.0 * float(np.mean(part.values("success")))
         for _, team in table.split("robots")
@@ -150,6 +152,7 @@ def _least_share(table: Table) -> Evidence:
 
 
 def _gain(table: Table) -> Evidence:
+    table.values("success")
     gains = []
     for _, part in table.split("p"):
         with_it = part.where(recovery=True, duration=120.0).values("success")
