@@ -1,0 +1,147 @@
+"""Guide: the explorer's own planner on a real robot, fed by its scans alone."""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from controllers.helping import avoid_past, potential_field, visbug
+from controllers.helping.explorer import Settings
+from controllers.mapping import ScanMap, free_ranges
+from mjmr.geometry import rotate
+
+Array = NDArray[np.float64]
+RAYS = np.arange(72) * (2 * math.pi / 72)  # of the potential field
+BODY = 0.30  # m: disc that must be free where a planner wants to go
+_PLAN, _SEE = 0.34, 0.27  # m: walls grown for Bug2's path, and for what is in sight of it
+
+
+class Guide:
+    """Where to go when neither goal, offer nor mate leads.
+
+    Avoid Past and the potential field get free ways of the body in directions of the robot's own
+    frame. VisBug-21 gets a map, which it does not need for more than what it saw: the walls within
+    its vision, as scans entered them so far. Bug2's path along them is planned again whenever they
+    grow, along the same M-line, and the target stays where it was on it.
+    """
+
+    def __init__(self, planner: str, settings: Settings):
+        """Args: planner: As the study names it. settings: Numbers."""
+        self.planner, self._settings = planner, settings
+        self._been = avoid_past.past(np.full(2, -40.0), np.full(2, 40.0), settings.cell)
+        self._bug = visbug.bug()
+        vision = settings.vision
+        self._walls = ScanMap(radius=_PLAN, reach=vision + 0.5)
+        self._sight = ScanMap(radius=_SEE, reach=vision + 0.5)
+        self._edges: Any = None
+        self._sight_edges = np.empty((0, 4))
+        self._version = -1
+        self._line: tuple[Array, Array] | None = None
+        self._at = np.zeros(2)
+        self.unreachable = 0
+
+    def new_goal(self) -> None:
+        """Start afresh."""
+        avoid_past.forget_past(self._been)
+        self._line = None
+
+    def interrupt(self) -> None:
+        """Something else led in between: VisBug draws a new M-line when it is asked again."""
+        self._line = None
+
+    def look(self, pose: Array, ranges: Array, angles: Array) -> None:
+        """Remember where one is and what one sees.
+
+        Args:
+            pose: Own (3,) [m, m, rad] in F_i.
+            ranges: Scan (b,) [m].
+            angles: Of its beams (b,) [rad], body frame.
+        """
+        if self.planner == "visbug":
+            self._walls.add(pose, ranges, angles)
+            self._sight.add(pose, ranges, angles)
+
+    def step(self, pose: Array, goal: Array, ranges: Array, angles: Array) -> tuple[Array, bool]:
+        """Where to go now.
+
+        Args:
+            pose: Own (3,) in F_i.
+            goal: (2,) [m] in F_i.
+            ranges: Scan (b,) [m].
+            angles: Of its beams (b,) [rad], body frame.
+
+        Returns:
+            A vector (2,): a place [m] in F_i if the flag that follows says so, else a direction.
+        """
+        x, y, s = float(pose[0]), float(pose[1]), self._settings
+        offset = goal - pose[:2]
+        if self.planner == "visbug":
+            return self._follow_bug(pose[:2], goal), True
+        own = RAYS if self.planner == "potential-field" else avoid_past.ANGLES
+        free = free_ranges(
+            ranges, np.cos(angles), np.sin(angles), own - pose[2], BODY, max(s.reach, 1.5)
+        )
+        if self.planner == "potential-field":
+            way = potential_field.direction(offset[0], offset[1], own, free, s.reach, s.gain)
+            return np.array(way), False
+        held = avoid_past.ANGLES[self._been.heading[0]]
+        entered = avoid_past.visit(self._been, x, y, s.cell)
+        blocked = free[int(self._been.heading[0])] < 0.1
+        if entered or blocked:
+            way = avoid_past.heading(
+                self._been, x, y, offset[0], offset[1], own, free, s.cell, s.bias
+            )
+            return np.array(way), False
+        return rotate([1.0, 0.0], held), False
+
+    def visit(self, pose: Array) -> None:
+        """Count where one is for Avoid Past, whoever leads."""
+        if self.planner == "avoid-past":
+            avoid_past.visit(self._been, float(pose[0]), float(pose[1]), self._settings.cell)
+
+    def _follow_bug(self, at: Array, goal: Array) -> Array:
+        if self._line is None or self._version != self._walls.version:
+            fresh = self._line is None or np.hypot(*(self._line[1] - goal)) > 0.5
+            if fresh:
+                self._line = at.copy(), goal.copy()
+            assert self._line is not None
+            if self._version != self._walls.version:
+                self._edges = self._walls.edges()
+                self._sight_edges = self._sight.edges()[0]
+                self._version = self._walls.version
+            edges, after, before = self._edges
+            (x, y), (gx, gy) = self._line
+            kept = self._progress()
+            visbug.plan(self._bug, x, y, gx, gy, edges, after, before, True)
+            self.unreachable += int(self._bug.at[3])
+            if not fresh:
+                self._resume(kept)
+        tx, ty = visbug.target(self._bug, at[0], at[1], self._settings.vision, self._sight_edges)
+        self._at = np.array([tx, ty])
+        return self._at
+
+    def _progress(self) -> float:
+        """Length of the path up to the target [m]."""
+        k = int(self._bug.at[1])
+        way = np.diff(self._bug.path[: k + 1], axis=0)
+        return float(np.hypot(*way.T).sum() + self._bug.offset[0])
+
+    def _resume(self, length: float) -> None:
+        """Put the target on a new path where the old one had it: near the same place, as far along.
+
+        Args:
+            length: Of the old path up to the target [m].
+        """
+        path = self._bug.path[: self._bug.at[0]]
+        way = np.diff(path, axis=0)
+        size = np.hypot(*way.T)
+        ends = np.concatenate([[0.0], np.cumsum(size)])
+        part = np.clip(
+            ((self._at - path[:-1]) * way).sum(axis=1) / np.maximum(size, 1e-12) ** 2, 0.0, 1.0
+        )
+        off = np.hypot(*(path[:-1] + part[:, None] * way - self._at).T)
+        along = ends[:-1] + part * size
+        # the path passes some places twice: the one as far along as before counts
+        k = int(np.argmin(off + 0.05 * np.abs(along - length)))
+        self._bug.at[1], self._bug.offset[0] = k, part[k] * size[k]
