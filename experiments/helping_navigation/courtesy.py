@@ -27,7 +27,7 @@ class Courtesy:
 
     def step(
         self, time: float, wish: ArrayLike, heading: Array, sight: Array, ranges: Array,
-        angles: Array,
+        angles: Array, follows: NDArray[np.int64] | None = None,
     ) -> Array:  # fmt: skip
         """Directions to go in.
 
@@ -38,17 +38,23 @@ class Courtesy:
             sight: Of :class:`TeammateSight` (n, n, 2).
             ranges: Scans (n, b) [m].
             angles: Of their beams (b,) [rad].
+            follows: Whom each robot goes after (n,), -1 nobody: that one need not make way for it,
+                but goes first.
 
         Returns:
             (n,) [rad], body frames.
         """
+        after = np.full(self._n, -1) if follows is None else follows
+        first = self._first.copy()
+        led = np.flatnonzero(after >= 0)
+        first[led, after[led]] = True
         bearing = wrap_angle(sight[..., 1] + heading[:, None])
         travel = self._travel(heading, time)
         others = sight[..., :1] * np.stack([np.cos(sight[..., 1]), np.sin(sight[..., 1])], axis=-1)
-        aside = give_way(others, travel, self._first, ranges, angles, self._config)
+        aside = give_way(others, travel, first, ranges, angles, self._config)
         way = np.where(np.isfinite(aside), aside, np.asarray(wish, dtype=np.float64))
         self._radio.broadcast_arrays(
-            np.column_stack([wrap_angle(way + heading), bearing]).astype(np.float32)
+            np.column_stack([wrap_angle(way + heading), after, bearing]).astype(np.float32)
         )
         self._before = time, bearing
         return way
@@ -59,7 +65,8 @@ class Courtesy:
         if not np.isfinite(then):
             return np.full((self._n, self._n), np.nan)
         told, sent = self._radio.latest()
-        theta = turn(bearing, np.einsum("iji->ij", told[:, :, 1:]))
+        theta = turn(bearing, np.einsum("iji->ij", told[:, :, 2:]))
         # only words said at the look before: both bearings are of one instant
         fresh = np.abs(sent - then) < 1e-6
+        fresh &= told[:, :, 1] != np.arange(self._n)[:, None]
         return np.where(fresh, wrap_angle(told[:, :, 0] + theta - heading[:, None]), np.nan)

@@ -23,7 +23,8 @@ from mjmr.simulation import Simulation
 Array = NDArray[np.float64]
 PERIOD = 0.1  # s: of the drives and of making way
 STEP_TICKS = 3  # ticks a motion step takes: 0.15 m at 0.5 m/s
-CLEAR = 0.27  # m: half of the lane that must be free for a place to be in sight; the hull's 0.19
+CLEAR = 0.30  # m: half of the lane that must be free for a place to be in sight
+KEPT = 0.22  # m: the same for a goal already in sight, which a robot in its turns may else lose
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,32 +137,41 @@ class Crew:
         own = wrap_angle(bearing + self.pose[i, 2])
         return Look(self.pose[i, :2].copy(), distance, own, clear)
 
-    def sees(self, i: int, point: Array) -> bool:
-        """Whether a place (2,) [m] in F_i is in sight of robot i and the straight way there free."""
+    def sees(self, i: int, point: Array, lane: float = CLEAR) -> bool:
+        """Whether robot i sees a place (2,) [m] in F_i and the straight way there is free.
+
+        Args:
+            i: The robot.
+            point: The place.
+            lane: Half the width that must be free [m].
+        """
         x, y = rotate(point - self.pose[i, :2], -self.pose[i, 2])
-        return self._clear(i, float(x), float(y))
+        return self._clear(i, float(x), float(y), lane)
 
     def bearing_to(self, i: int, point: Array) -> tuple[float, float]:
         """Bearing [rad] in the body frame of robot i, and distance [m], of a place in F_i."""
         x, y = rotate(point - self.pose[i, :2], -self.pose[i, 2])
         return math.atan2(y, x), math.hypot(x, y)
 
-    def drive(self, time: float, wish: Array, reach: Array) -> None:
+    def drive(
+        self, time: float, wish: Array, reach: Array, follows: NDArray[np.int64] | None = None
+    ) -> None:
         """Make way for who goes first, keep off what is near, and drive.
 
         Args:
             time: [s].
             wish: Directions (n,) [rad], body frames; NaN: stand.
             reach: Distances to where they go (n,) [m].
+            follows: Whom each goes after (n,), -1 nobody.
         """
         sight = self.sight
         way = self._courtesy.step(
-            time, wish, self.pose[:, 2], sight, self.ranges, self.angles
+            time, wish, self.pose[:, 2], sight, self.ranges, self.angles, follows
         )
         others = sight[..., :1] * np.stack([np.cos(sight[..., 1]), np.sin(sight[..., 1])], axis=-1)
         reach = np.where(way == wish, reach, 1.0)
         self.robots.drive(self._steering.step(way, reach, self.ranges, self.angles, others))
 
-    def _clear(self, i: int, x: float, y: float) -> bool:
+    def _clear(self, i: int, x: float, y: float, lane: float = CLEAR) -> bool:
         cos, sin = self._beams
-        return way_is_clear(self.ranges[i], cos, sin, x, y, CLEAR, self.setup.sight)
+        return way_is_clear(self.ranges[i], cos, sin, x, y, lane, self.setup.sight)

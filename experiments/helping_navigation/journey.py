@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from controllers.helping.explorer import GOAL, MATE, OFFER, PLAN, Settings
 from controllers.helping.goal_sharing import CHAIN, LITERAL
 from controllers.motion.patrol import Patrol
-from experiments.helping_navigation.crew import PERIOD, STEP_TICKS, Crew, CrewSetup
+from experiments.helping_navigation.crew import CLEAR, KEPT, STEP_TICKS, Crew, CrewSetup
 from experiments.helping_navigation.guide import Guide
 from experiments.helping_navigation.mind import Mind
 from mjmr.faults import Fault
 from mjmr.geometry import wrap_angle
 
 Array = NDArray[np.float64]
+STAND_OFF = 0.9  # m: R1 keeps from a mate it goes after
 MODES = {GOAL: "sees its goal", OFFER: "follows an offer", MATE: "follows a mate", PLAN: "plans"}
 
 
@@ -125,7 +126,14 @@ class Journey:
                     way = self._patrol.step(at[:, :2], now) - at[:, :2]
                     wish[1:] = wrap_angle(np.arctan2(way[:, 1], way[:, 0]) - at[:, 2])
                     reach[1:] = np.hypot(*way.T)
-                crew.drive(now, wish, reach)
+                follows = np.full(n, -1)
+                if self.mode == MATE:
+                    follows[0] = self.minds[0].state.mate[0]
+                    # as near as bodies allow; from there it goes where the mate goes
+                    if np.isfinite(crew.sight[0, follows[0], 0]):
+                        reach[0] -= STAND_OFF
+                        wish[0] = wish[0] if reach[0] > 0 else np.nan
+                crew.drive(now, wish, reach, follows)
                 if crew.simulation.noted:
                     self._note()
             else:
@@ -152,7 +160,8 @@ class Journey:
         self._hears[:] = False
         self._hears[[sender for sender, _ in inbox[0]]] = True
         me = self.minds[0]
-        self.mode, target = me.decide(lambda p: crew.sees(0, p), self._hears)
+        sees_goal = crew.sees(0, me.known.goal[0, 0], KEPT if self.mode == GOAL else CLEAR)
+        self.mode, target = me.decide(lambda p: crew.sees(0, p), sees_goal, self._hears)
         pose = crew.pose[0]
         self.guide.look(pose, crew.ranges[0], crew.angles)
         if self.mode == PLAN:

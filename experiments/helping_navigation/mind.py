@@ -112,11 +112,12 @@ class Mind:
         self._then = now
         return say(known, i, bool(self.state.trouble[i]), now.position, now.bearing)
 
-    def decide(self, sees: Sees, hears: NDArray[np.bool_]) -> tuple[int, Array]:
+    def decide(self, sees: Sees, sees_goal: bool, hears: NDArray[np.bool_]) -> tuple[int, Array]:
         """What to go to for one's own goal.
 
         Args:
             sees: As for :meth:`look`, whose instant this is.
+            sees_goal: Whether its own goal is in sight.
             hears: From whom words came at the last instant (n,).
 
         Returns:
@@ -131,7 +132,7 @@ class Mind:
         x, y, there = next_point(self.offered, i)
         self.mode, tx, ty = decide(
             self.known, self.offered, self.state, i, position, heard, distance, bearing,
-            sees(self.known.goal[i, i]), there and sees(np.array([x, y])), self._settings,
+            sees_goal, there and sees(np.array([x, y])), self._settings,
             self._shares_state,
         )  # fmt: skip
         return self.mode, np.array([tx, ty])
