@@ -1,6 +1,6 @@
 """Patrols: robots that go round loops of waypoints."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from mjmr.errors import InvalidInputError
 
 Array = NDArray[np.float64]
+_BACK = 5  # waypoints that are tried
 
 
 class Patrol:
@@ -24,7 +25,7 @@ class Patrol:
         *,
         phase: Sequence[int] | None = None,
         reach: float = 0.35,
-        patience: float = 10.0,
+        patience: float = 20.0,
     ):
         """Set the loops.
 
@@ -50,12 +51,21 @@ class Patrol:
         self._reach, self._patience = reach, patience
         self._nearest, self._since = np.full(n, np.inf), np.zeros(n)
 
-    def step(self, position: ArrayLike, time: float) -> Array:
+    def step(
+        self,
+        position: ArrayLike,
+        time: float,
+        sees: Callable[[int, Array], bool] | None = None,
+    ) -> Array:
         """Waypoints to make for now.
+
+        Who made way for another may have lost sight of its waypoint; it first goes back to the
+        last one that is in sight.
 
         Args:
             position: Of the robots (n, 2) [m], in the frame of the loops.
             time: [s].
+            sees: Whether the straight way of robot i to a place (2,) [m] is free; default: always.
 
         Returns:
             (n, 2) [m].
@@ -71,4 +81,10 @@ class Patrol:
                 self.index[i] = (self.index[i] + 1) % len(route)
                 self._nearest[i], self._since[i] = np.inf, time
             goals[i] = route[self.index[i]]
+            if sees is not None and not sees(i, goals[i]):
+                for back in range(1, min(_BACK, len(route))):
+                    place = route[(self.index[i] - back) % len(route)]
+                    if sees(i, place):
+                        goals[i] = place
+                        break
         return goals

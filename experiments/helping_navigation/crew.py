@@ -148,6 +148,13 @@ class Crew:
         x, y = rotate(point - self.pose[i, :2], -self.pose[i, 2])
         return self._clear(i, float(x), float(y), lane)
 
+    def sees_in_office(self, i: int, point: Array) -> bool:
+        """Whether the straight way of robot i to a place (2,) [m] of the office is free."""
+        at = self.in_office[i]
+        x, y = rotate(point - at[:2], -at[2])
+        cos, sin = self._beams
+        return way_is_clear(self.ranges[i], cos, sin, float(x), float(y), KEPT, math.inf)
+
     def bearing_to(self, i: int, point: Array) -> tuple[float, float]:
         """Bearing [rad] in the body frame of robot i, and distance [m], of a place in F_i."""
         x, y = rotate(point - self.pose[i, :2], -self.pose[i, 2])

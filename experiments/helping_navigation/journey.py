@@ -123,11 +123,14 @@ class Journey:
                 wish[0], reach[0] = self._wish()
                 if self._patrol is not None and n > 1:
                     at = crew.in_office[1:]
-                    way = self._patrol.step(at[:, :2], now) - at[:, :2]
+                    goals = self._patrol.step(
+                        at[:, :2], now, lambda i, p: crew.sees_in_office(i + 1, p)
+                    )
+                    way = goals - at[:, :2]
                     wish[1:] = wrap_angle(np.arctan2(way[:, 1], way[:, 0]) - at[:, 2])
                     reach[1:] = np.hypot(*way.T)
                 follows = np.full(n, -1)
-                if self.mode == MATE:
+                if self.mode == MATE and self.minds[0].state.mate[0] >= 0:
                     follows[0] = self.minds[0].state.mate[0]
                     # as near as bodies allow; from there it goes where the mate goes
                     if np.isfinite(crew.sight[0, follows[0], 0]):
