@@ -77,7 +77,7 @@ class Patrol:
                 self._nearest[i], self._since[i] = apart, time
             late = time - self._since[i] > self._patience
             if apart < self._reach or late:
-                self.skipped[i] += late and apart >= self._reach
+                self.skipped[i] += late and apart >= self._reach and len(route) > 1
                 self.index[i] = (self.index[i] + 1) % len(route)
                 self._nearest[i], self._since[i] = np.inf, time
             goals[i] = route[self.index[i]]

@@ -126,6 +126,10 @@ class Crew:
         """A point (2,) [m] of the office in F_i, as robot i's localizer and odometry have it."""
         return transform_points(self._frame[i], point)
 
+    def in_the_office(self, i: int, point: ArrayLike) -> Array:
+        """A point (2,) [m] of F_i in the office; what :meth:`own` undoes."""
+        return transform_points(invert(self._frame[i]), point)
+
     def look(self, i: int) -> Look:
         """What robot i perceives of its teammates, in F_i."""
         distance, bearing = self.sight[i, :, 0], self.sight[i, :, 1]

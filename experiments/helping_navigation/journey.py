@@ -19,6 +19,7 @@ from mjmr.faults import Fault
 from mjmr.geometry import wrap_angle
 
 Array = NDArray[np.float64]
+AT_POST = 0.15  # m: a supporter that stands is where it belongs
 STAND_OFF = 0.9  # m: R1 keeps from a mate it goes after
 MODES = {GOAL: "sees its goal", OFFER: "follows an offer", MATE: "follows a mate", PLAN: "plans"}
 
@@ -93,6 +94,7 @@ class Journey:
         ]
         self.guide = Guide(setup.planner, setup.settings)
         self._patrol = Patrol(setup.routes, phase=setup.phase) if len(setup.routes) else None
+        self._stands = np.array([len(route) == 1 for route in setup.routes])
         self.legs: list[Leg] = []
         self.mode = PLAN
         self._target = -1
@@ -129,6 +131,8 @@ class Journey:
                     way = goals - at[:, :2]
                     wish[1:] = wrap_angle(np.arctan2(way[:, 1], way[:, 0]) - at[:, 2])
                     reach[1:] = np.hypot(*way.T)
+                    # who has but one waypoint stands there
+                    wish[1:][self._stands & (reach[1:] < AT_POST)] = np.nan
                 follows = np.full(n, -1)
                 if self.mode == MATE and self.minds[0].state.mate[0] >= 0:
                     follows[0] = self.minds[0].state.mate[0]
@@ -213,9 +217,15 @@ class Journey:
         return f"R1 {MODES[self.mode]}{trouble}   target {self._target + 1}"
 
     def _note(self) -> None:
-        goals = np.full((self.crew.n, 2), np.nan)
+        crew = self.crew
+        goals = np.full((crew.n, 2), np.nan)
         goals[0] = self._goal
-        self.crew.simulation.note(goals=goals)
+        waypoints = goals.copy()
+        if self._place is not None:
+            # where R1 goes now, from F_1 back to the office, for the picture alone
+            waypoints[0] = crew.in_the_office(0, self._place)
+        links = np.isfinite(crew.sight[..., 0]).astype(float)
+        crew.simulation.note(goals=goals, waypoints=waypoints, links=links)
 
 
 class _Track:

@@ -46,10 +46,7 @@ def office_world(size: ArrayLike, walls: ArrayLike) -> World:
     for x0, y0, x1, y1 in np.asarray(walls, dtype=np.float64).reshape(-1, 4):
         rim = (x0 == x1 and x0 in (0.0, length)) or (y0 == y1 and y0 in (0.0, width))
         if not rim:
-            world.add_box(
-                (x0 + x1) / 2, (y0 + y1) / 2, math.hypot(x1 - x0, y1 - y0), WALL_THICKNESS,
-                yaw=math.atan2(y1 - y0, x1 - x0), height=WALL_HEIGHT,
-            )  # fmt: skip
+            world.add_wall((x0, y0), (x1, y1), thickness=WALL_THICKNESS, height=WALL_HEIGHT)
     return world
 
 
