@@ -43,6 +43,7 @@ class CrewSetup:
             that odometry does not know of.
         localizer_noise: Deviations [m, rad] of where robots take themselves to be in the office.
         dt_max: Largest timestep [s].
+        marks: Places (k, 2) [m] painted on the floor: goals, for films.
     """
 
     office: dict[str, Any]
@@ -54,7 +55,7 @@ class CrewSetup:
     wheel_error: float = 0.0
     localizer_noise: tuple[float, float] = (0.01, 0.003)
     dt_max: float = 0.01
-    extra: dict[str, Any] = field(default_factory=dict)
+    marks: Array = field(default_factory=lambda: np.empty((0, 2)))
 
 
 class Crew:
@@ -76,6 +77,8 @@ class Crew:
         """Args: setup: What they are. seed: Of the trial."""
         self.setup, self.n = setup, len(setup.starts)
         self.world = office_world(setup.office["size"], setup.office["walls"])
+        for x, y in setup.marks:
+            self.world.add_mark(x, y, radius=0.3, rgba=(0.95, 0.45, 0.05, 1.0))
         self.robots = add_team(self.world, setup.starts, lidar_rate=1 / PERIOD)
         noise = setup.localizer_noise
         self.robots.mount(

@@ -1,5 +1,7 @@
 """What the physical trials run: a tour of targets, the trap, a standing chain, in MuJoCo."""
 
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -8,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from experiments.helping_navigation.crew import CrewSetup
 from experiments.helping_navigation.journey import JourneySetup
 from mjmr.faults import Fault
+from mjmr.office import Office, load_office
 
 Array = NDArray[np.float64]
 _START = (8.0, 6.0)  # m: R1 in the corridor of world 1
@@ -15,18 +18,24 @@ _START = (8.0, 6.0)  # m: R1 in the corridor of world 1
 CHAIN_START = (14.6, 8.6)
 CHAIN_GOAL = (3.9, 2.4)
 CHAIN_POSTS = ((14.5, 5.9), (8.2, 6.2), (3.9, 5.9))
-TRAP_START, TRAP_GOAL = (6.0, 5.0), (12.0, 5.0)
+TRAP_START, TRAP_GOAL = (8.0, 5.0), (12.0, 5.0)
+
+
+@cache
+def office(name: str) -> Office:
+    """One of the offices in the folder ``offices``, whose doors Pioneers fit through."""
+    return load_office(Path(__file__).with_name("offices") / f"{name}.json", clearance=0.34)
 
 
 def tour(
-    office: Any, targets: ArrayLike, *, planner: str, robots: int, chain: bool, seed: int,
+    place: Any, targets: ArrayLike, *, planner: str, robots: int, chain: bool, seed: int,
     lost: bool = False, err_max: float = 0.0, radio_loss: float = 0.0, wheel_error: float = 0.0,
     leg_time: float = 900.0, start: ArrayLike = _START, dead_after: float = np.inf,
 ) -> JourneySetup:  # fmt: skip
     """R1 visits targets, the others go round the office's first route.
 
     Args:
-        office: With ``size``, ``walls`` and ``routes``.
+        place: An office with ``size``, ``walls`` and ``routes``.
         targets: Of R1 (k, 2) [m].
         planner: Of R1; the potential field goes with state-sharing.
         robots: How many, R1 included.
@@ -41,7 +50,7 @@ def tour(
         dead_after: The last supporter dies then [s].
     """
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(27, 1)))
-    route = np.asarray(office.routes[0])
+    route = np.asarray(place.routes[0])
     helpers = robots - 1
     first = int(rng.integers(len(route)))
     phase = [(first + len(route) * k // max(helpers, 1)) % len(route) for k in range(helpers)]
@@ -62,7 +71,7 @@ def tour(
         faults.append(Fault(kind="dead", robot=robots - 1, start=dead_after))
     return JourneySetup(
         crew=CrewSetup(
-            office={"size": office.size, "walls": office.walls},
+            office={"size": place.size, "walls": place.walls},
             starts=np.array(starts),
             frames=frames,
             err_max=err_max,
@@ -81,13 +90,13 @@ def tour(
 
 
 def trap(
-    office: Any, *, shares_state: bool, robots: int, seed: int, leg_time: float = 1500.0,
+    place: Any, *, shares_state: bool, robots: int, seed: int, leg_time: float = 1500.0,
     chain: bool = False,
 ) -> JourneySetup:  # fmt: skip
     """R1 in a dead end with its goal behind the wall, and a potential field (figures 9 and 10).
 
     Args:
-        office: The trap.
+        place: The office called trap.
         shares_state: Whether R1 goes to mates when in trouble.
         robots: R1 included.
         seed: Draws the phase of the patrol.
@@ -96,7 +105,7 @@ def trap(
     """
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(27, 2)))
     helpers = robots - 1
-    route = np.asarray(office.routes[0])
+    route = np.asarray(place.routes[0])
     first = int(rng.integers(len(route)))
     phase = [(first + len(route) * k // max(helpers, 1)) % len(route) for k in range(helpers)]
     starts = [(*TRAP_START, 0.0)]
@@ -105,9 +114,10 @@ def trap(
         starts.append((*(route[p - 1] + 0.5 * away), float(np.arctan2(away[1], away[0]))))
     return JourneySetup(
         crew=CrewSetup(
-            office={"size": office.size, "walls": office.walls},
+            office={"size": place.size, "walls": place.walls},
             starts=np.array(starts),
             frames=np.zeros((robots, 3)),
+            marks=np.array([TRAP_GOAL]),
         ),
         targets=np.array([TRAP_GOAL]),
         planner="potential-field",
@@ -120,13 +130,13 @@ def trap(
 
 
 def standing_chain(
-    office: Any, *, planner: str, seed: int, dead: bool = False, radio_loss: float = 0.0,
+    place: Any, *, planner: str, seed: int, dead: bool = False, radio_loss: float = 0.0,
     lost: bool = False, chain: bool = False, leg_time: float = 900.0,
 ) -> JourneySetup:  # fmt: skip
     """R1 sees its goal by three mirrors that stand in world 1.
 
     Args:
-        office: World 1.
+        place: World 1.
         planner: Of R1.
         seed: Draws R1's heading, and frames if the supporters are lost.
         dead: Whether the middle relay is dead from the start.
@@ -144,7 +154,7 @@ def standing_chain(
         frames[1:] = draw
     return JourneySetup(
         crew=CrewSetup(
-            office={"size": office.size, "walls": office.walls},
+            office={"size": place.size, "walls": place.walls},
             starts=starts,
             frames=frames,
             radio_loss=radio_loss,
