@@ -97,7 +97,7 @@ def _give_way(others, travel, first, ranges, cos, sin, config):
         )
         best = -math.inf
         for h in range(_HEADINGS):
-            angle = 2.0 * math.pi * h / _HEADINGS
+            angle = 2.0 * math.pi * (h - _HEADINGS // 2 + 1) / _HEADINGS
             dx, dy = math.cos(angle), math.sin(angle)
             free = free_way(dx, dy, points, radii, count, step)
             along = c * (x + free * dx) + s * (y + free * dy)
