@@ -53,7 +53,9 @@ class ScanMap:
             angles: Of the beams (b,) [rad] to the pose's heading.
         """
         taken = (ranges > 0) & (ranges < self.reach)
-        local = ranges[taken, None] * np.column_stack([np.cos(angles[taken]), np.sin(angles[taken])])
+        local = ranges[taken, None] * np.column_stack(
+            [np.cos(angles[taken]), np.sin(angles[taken])]
+        )
         cells = np.floor(transform_points(pose, local) / self.cell).astype(int) + self._size // 2
         inside = ((cells >= 0) & (cells < self._size)).all(axis=1)
         cells = cells[inside]

@@ -81,9 +81,7 @@ class Crew:
             self.world.add_mark(x, y, radius=0.3, rgba=(0.95, 0.45, 0.05, 1.0))
         self.robots = add_team(self.world, setup.starts, lidar_rate=1 / PERIOD)
         noise = setup.localizer_noise
-        self.robots.mount(
-            Localizer(rate=1 / PERIOD, position_noise=noise[0], yaw_noise=noise[1])
-        )
+        self.robots.mount(Localizer(rate=1 / PERIOD, position_noise=noise[0], yaw_noise=noise[1]))
         self.eyes = self.world.mount(
             TeammateSight(radius=setup.sight, err_max=setup.err_max, rate=1 / PERIOD)
         )

@@ -175,7 +175,11 @@ class _Geometry:
         side = np.stack([-away[..., 1], away[..., 0]], axis=-1) / length * MARKER_RADIUS
         part = clear.copy()
         for k in range(len(masts)):
-            eyes = masts[k] + np.array([[0.08, 0, 0.2], [-0.08, 0, 0.2], [0, 0.08, 0.2], [0, -0.08, 0.2]]) @ turns[k].T
+            eyes = (
+                masts[k]
+                + np.array([[0.08, 0, 0.2], [-0.08, 0, 0.2], [0, 0.08, 0.2], [0, -0.08, 0.2]])
+                @ turns[k].T
+            )
             own = np.full(len(eyes), k)
             for sign in (-1.0, 1.0):
                 edge = masts.copy()

@@ -18,7 +18,9 @@ def room(x0: float, y0: float, x1: float, y1: float) -> np.ndarray:
     with np.errstate(divide="ignore"):
         along = np.where(np.cos(ANGLES) > 0, x1, x0) / np.cos(ANGLES)
         across = np.where(np.sin(ANGLES) > 0, y1, y0) / np.sin(ANGLES)
-    return np.minimum(np.where(along > 0, along, np.inf), np.where(across > 0, across, np.inf))[None]
+    return np.minimum(np.where(along > 0, along, np.inf), np.where(across > 0, across, np.inf))[
+        None
+    ]
 
 
 def test_full_speed_ahead_where_free():
