@@ -103,7 +103,10 @@ def free_space(size: Any, walls: Any, clearance: float) -> Polygon:
     largest = max(pieces, key=lambda piece: piece.area)
     if largest.is_empty or not isinstance(largest, Polygon):
         raise InvalidInputError(f"no room is left {clearance:g} m from the walls of this office")
-    return orient(shapely.remove_repeated_points(largest.simplify(0.0)))
+    # without vertices on straight sides
+    slim = largest.simplify(0.0)
+    assert isinstance(slim, Polygon)
+    return orient(slim)
 
 
 def load_office(path: str | Path, clearance: float = 0.235) -> Office:

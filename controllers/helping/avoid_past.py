@@ -1,9 +1,9 @@
 """Avoid Past: a robot keeps away from where it has been.
 
-Visits of cells of a grid in the robot's own frame are counted. When it enters another cell it
-chooses, among 16 headings, the one whose cells at 0.4, 0.8 and 1.2 m ahead were visited least; what
-a wall hides counts as visited, and a small bias draws it to the target. It holds the heading until
-the cell changes: a sum of pushes from cells oscillates.
+Visits of cells of a grid in the robot's own frame are counted. The robot chooses, among 16
+headings, the one whose cells at 0.4, 0.8 and 1.2 m ahead were visited least; what a wall hides
+counts as visited, and a small bias draws it to the target. It holds the heading for the way of a
+cell: a sum of pushes from cells oscillates, and so does a new choice at every border of a cell.
 
 Source: the schema is Balch and Arkin's (1993), which the paper adds to its potential field; it
 gives no detail, and the choice among headings is ours.
@@ -28,12 +28,14 @@ class Past(NamedTuple):
         visits: Entries of each cell (nx, ny).
         low: Corner of the grid (2,) [m], own frame.
         cell: Its present cell (2,); -1 before the first.
+        place: Where it chose its heading (2,) [m]; far off if it has to choose.
         heading: The heading it holds (1,), an index of ``ANGLES``.
     """
 
     visits: NDArray[np.int64]
     low: NDArray[np.float64]
     cell: NDArray[np.int64]
+    place: NDArray[np.float64]
     heading: NDArray[np.int64]
 
 
@@ -43,7 +45,7 @@ def past(low: NDArray[np.float64], high: NDArray[np.float64], cell: float) -> Pa
     nx, ny = np.ceil((high - low) / cell).astype(int) + 1
     return Past(
         np.zeros((nx, ny), dtype=np.int64), low, np.full(2, -1, dtype=np.int64),
-        np.zeros(1, dtype=np.int64),
+        np.full(2, np.inf), np.zeros(1, dtype=np.int64),
     )  # fmt: skip
 
 
@@ -52,7 +54,7 @@ def forget_past(been):
     """Start afresh: at a new goal."""
     been.visits[:] = 0
     been.cell[:] = -1
-    been.heading[0] = 0
+    been.place[:] = np.inf
 
 
 @njit
@@ -65,18 +67,20 @@ def _visits(been, x, y, size):
 
 @njit
 def visit(been, x, y, size):
-    """Count the cell at (x, y) [m] if it was just entered; returns whether it was.
-
-    To be called at every step, whoever steers.
-    """
+    """Count the cell at (x, y) [m] if it was just entered; at every step, whoever steers."""
     nx, ny = been.visits.shape
     i = min(max(int(np.floor((x - been.low[0]) / size)), 0), nx - 1)
     j = min(max(int(np.floor((y - been.low[1]) / size)), 0), ny - 1)
     if i == been.cell[0] and j == been.cell[1]:
-        return False
+        return
     been.cell[0], been.cell[1] = i, j
     been.visits[i, j] += 1
-    return True
+
+
+@njit
+def due(been, x, y, size):
+    """Whether another heading is to be chosen: the way of a cell is gone, or none was chosen."""
+    return not np.hypot(x - been.place[0], y - been.place[1]) < size - 1e-6
 
 
 @njit
@@ -118,4 +122,5 @@ def heading(been, x, y, tx, ty, angles, ranges, size, bias):
             if -ranges[k] < best:
                 best, chosen = -ranges[k], k
     been.heading[0] = chosen
+    been.place[0], been.place[1] = x, y
     return np.cos(angles[chosen]), np.sin(angles[chosen])

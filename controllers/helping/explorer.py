@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from controllers.helping.goal_sharing import follow
-from controllers.helping.state_sharing import find_mate, measure
+from controllers.helping.state_sharing import find_mate, leave_mate, measure
 from mjmr.jit import njit
 
 GOAL, OFFER, MATE, PLAN = 0, 1, 2, 3
@@ -31,6 +31,7 @@ class Settings(NamedTuple):
         patience: Steps without progress after which an offer is dropped.
         level: Cr.
         vision: How far VisBug-21 sees [m].
+        left: VisBug keeps walls on its left; else on its right.
         reach: Of the potential field's push [m].
         gain: Of the potential field's push.
         cell: Of Avoid Past's grid [m].
@@ -42,15 +43,16 @@ class Settings(NamedTuple):
     step: float = 0.15
     sight: float = 8.0
     epsilon: float = 0.3
-    arrive: float = 0.15
+    arrive: float = 0.02
     closer: float = 0.075
     patience: int = 10
     level: int = 20
     vision: float = 3.0
+    left: bool = True
     reach: float = 1.0
-    gain: float = 1.0
+    gain: float = 2.0
     cell: float = 0.4
-    bias: float = 0.5
+    bias: float = 0.2
     keep_promise: bool = False
 
 
@@ -85,18 +87,16 @@ def decide(
     if sees_goal:
         mode = GOAL
         offered.active[i] = False
-        state.mate[i] = -1
+        leave_mate(state, i)
     elif offered.active[i] and follow(
         offered, position, i, sees_next, settings.arrive, settings.closer, settings.patience
     ):
         mode = OFFER
-        at = offered.index[i]
+        at = offered.at[i]
         x, y = offered.points[i, at, 0], offered.points[i, at, 1]
         key = 1 + offered.taken[i] * offered.points.shape[1] + at
-        state.mate[i] = -1
-    elif shares_state and find_mate(
-        state, i, position, heard, distance, bearing, settings.arrive
-    ):
+        leave_mate(state, i)
+    elif shares_state and find_mate(state, i, position, heard, distance, bearing, settings.arrive):
         mode = MATE
         x, y = state.place[i, 0], state.place[i, 1]
         key = -2 - state.mate[i]
@@ -109,7 +109,7 @@ def decide(
 @njit
 def next_point(offered, i):
     """The point of robot i's offer after the one it goes to, and whether there is one."""
-    at = offered.index[i] + 1
-    if not offered.active[i] or at >= offered.count[i]:
+    at = offered.at[i] + 1
+    if not offered.active[i] or at >= offered.length[i]:
         return 0.0, 0.0, False
     return offered.points[i, at, 0], offered.points[i, at, 1], True

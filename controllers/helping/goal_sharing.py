@@ -35,7 +35,7 @@ class Memory(NamedTuple):
         goal: Position (n, n, 2) [m].
         distance: D, the length of the way to the goal that i can offer now (n, n) [m]; inf: none.
         ghost_distance: D from i's ghost (n, n) [m].
-        count: Ghosts remembered (n, n); the last one is in use.
+        ghosts: How many are remembered (n, n); the last one is in use.
         path: Ghosts (n, n, k, 2) [m], from the goal's end.
         last: Own position a step ago (n, 2) [m].
     """
@@ -44,7 +44,7 @@ class Memory(NamedTuple):
     goal: NDArray[np.float64]
     distance: NDArray[np.float64]
     ghost_distance: NDArray[np.float64]
-    count: NDArray[np.int64]
+    ghosts: NDArray[np.int64]
     path: NDArray[np.float64]
     last: NDArray[np.float64]
 
@@ -56,8 +56,8 @@ class Offers(NamedTuple):
         active: Whether it follows one (n,).
         giver: Who gave it (n,); -1 none.
         promise: Length promised (n,) [m]; no offer that is not shorter is taken.
-        count: Points of the offer (n,).
-        index: The point it goes to now (n,).
+        length: Points of the offer (n,).
+        at: The point it goes to now (n,).
         points: Places (n, k, 2) [m]: where the giver stood, and in the chain reading its ghosts.
         rest: Length from each point to the goal (n, k) [m].
         best: Smallest distance to the present point so far (n,) [m].
@@ -69,8 +69,8 @@ class Offers(NamedTuple):
     active: NDArray[np.bool_]
     giver: NDArray[np.int64]
     promise: NDArray[np.float64]
-    count: NDArray[np.int64]
-    index: NDArray[np.int64]
+    length: NDArray[np.int64]
+    at: NDArray[np.int64]
     points: NDArray[np.float64]
     rest: NDArray[np.float64]
     best: NDArray[np.float64]
@@ -86,7 +86,7 @@ def memory(n: int, ghosts: int) -> Memory:
         goal=np.zeros((n, n, 2)),
         distance=np.full((n, n), np.inf),
         ghost_distance=np.full((n, n), np.inf),
-        count=np.zeros((n, n), dtype=np.int64),
+        ghosts=np.zeros((n, n), dtype=np.int64),
         path=np.zeros((n, n, ghosts, 2)),
         last=np.zeros((n, 2)),
     )
@@ -98,8 +98,8 @@ def offers(n: int, ghosts: int) -> Offers:
         active=np.zeros(n, dtype=np.bool_),
         giver=np.full(n, -1, dtype=np.int64),
         promise=np.full(n, np.inf),
-        count=np.zeros(n, dtype=np.int64),
-        index=np.zeros(n, dtype=np.int64),
+        length=np.zeros(n, dtype=np.int64),
+        at=np.zeros(n, dtype=np.int64),
         points=np.zeros((n, ghosts + 1, 2)),
         rest=np.zeros((n, ghosts + 1)),
         best=np.full(n, np.inf),
@@ -123,7 +123,7 @@ def new_goal(known, offered, owner, x, y):
     known.goal[owner, owner, 0], known.goal[owner, owner, 1] = x, y
     offered.active[owner], offered.giver[owner] = False, -1
     offered.promise[owner] = np.inf
-    offered.count[owner] = offered.index[owner] = 0
+    offered.length[owner] = offered.at[owner] = 0
 
 
 @njit
@@ -167,7 +167,7 @@ def share_goals(known, position, heard, distance, bearing):
 def forget(known, i, owner):
     """Robot i has nothing to offer to the owner any more."""
     known.distance[i, owner] = known.ghost_distance[i, owner] = np.inf
-    known.count[i, owner] = 0
+    known.ghosts[i, owner] = 0
 
 
 @njit
@@ -184,17 +184,17 @@ def check_goal(known, position, i, owner, sees_goal, sees_ghost):
         i: The robot.
         owner: Whose goal.
         sees_goal: Whether ``known.goal[i, owner]`` is in its sight.
-        sees_ghost: Whether its ghost, ``known.path[i, owner, known.count[i, owner] - 1]``, is;
+        sees_ghost: Whether its ghost, ``known.path[i, owner, known.ghosts[i, owner] - 1]``, is;
             anything if it has none.
     """
     x, y = position[i, 0], position[i, 1]
     if sees_goal:
         far = np.hypot(known.goal[i, owner, 0] - x, known.goal[i, owner, 1] - y)
         known.path[i, owner, 0, 0], known.path[i, owner, 0, 1] = x, y
-        known.count[i, owner] = 1
+        known.ghosts[i, owner] = 1
         known.distance[i, owner] = known.ghost_distance[i, owner] = far
         return
-    count = known.count[i, owner]
+    count = known.ghosts[i, owner]
     if count == 0:
         return
     if not sees_ghost:
@@ -208,12 +208,10 @@ def check_goal(known, position, i, owner, sees_goal, sees_ghost):
             return
         known.path[i, owner, count, 0] = known.last[i, 0]
         known.path[i, owner, count, 1] = known.last[i, 1]
-        known.count[i, owner] = count = count + 1
+        known.ghosts[i, owner] = count = count + 1
         known.ghost_distance[i, owner] += step
     ghost = known.path[i, owner, count - 1]
-    known.distance[i, owner] = known.ghost_distance[i, owner] + np.hypot(
-        ghost[0] - x, ghost[1] - y
-    )
+    known.distance[i, owner] = known.ghost_distance[i, owner] + np.hypot(ghost[0] - x, ghost[1] - y)
 
 
 @njit
@@ -241,7 +239,7 @@ def reflect(known, offered, position, heard, distance, bearing, keep_promise):
             if i == j or not heard[i, j]:
                 continue
             for owner in range(n):
-                if owner == j or known.count[j, owner] == 0:
+                if owner == j or known.ghosts[j, owner] == 0:
                     continue
                 if goal_number(known.number[i, owner], n) != goal_number(known.number[j, owner], n):
                     continue
@@ -249,7 +247,7 @@ def reflect(known, offered, position, heard, distance, bearing, keep_promise):
                 if i == owner:
                     if sum_ < offered.promise[i] - _LESS:
                         _take(known, offered, position, i, j, sum_, distance, bearing)
-                elif sum_ < known.distance[i, owner] - _LESS and known.count[j, owner] < max(
+                elif sum_ < known.distance[i, owner] - _LESS and known.ghosts[j, owner] < max(
                     depth, 2
                 ):
                     _adopt(known, position, i, j, owner, sum_, distance, bearing)
@@ -260,7 +258,7 @@ def _adopt(known, position, i, j, owner, sum_, distance, bearing):
     """Robot i takes the place of j for its ghost."""
     count = 0
     if known.path.shape[2] > 1:
-        count = known.count[j, owner]
+        count = known.ghosts[j, owner]
         for k in range(count):
             known.path[i, owner, k, 0], known.path[i, owner, k, 1] = to_mine(
                 known.path[j, owner, k, 0], known.path[j, owner, k, 1],
@@ -269,7 +267,7 @@ def _adopt(known, position, i, j, owner, sum_, distance, bearing):
             )  # fmt: skip
     known.path[i, owner, count, 0] = position[i, 0] + distance[i, j] * np.cos(bearing[i, j])
     known.path[i, owner, count, 1] = position[i, 1] + distance[i, j] * np.sin(bearing[i, j])
-    known.count[i, owner] = count + 1
+    known.ghosts[i, owner] = count + 1
     known.ghost_distance[i, owner] = known.distance[j, owner]
     known.distance[i, owner] = sum_
 
@@ -286,7 +284,7 @@ def _take(known, offered, position, i, j, sum_, distance, bearing):
     offered.rest[i, 0] = known.distance[j, i]
     count = 1
     if known.path.shape[2] > 1:
-        for k in range(known.count[j, i] - 1, -1, -1):
+        for k in range(known.ghosts[j, i] - 1, -1, -1):
             px, py = to_mine(
                 known.path[j, i, k, 0], known.path[j, i, k, 1],
                 position[j, 0], position[j, 1], position[i, 0], position[i, 1],
@@ -304,21 +302,21 @@ def _take(known, offered, position, i, j, sum_, distance, bearing):
                 offered.points[i, k, 0] - offered.points[i, k - 1, 0],
                 offered.points[i, k, 1] - offered.points[i, k - 1, 1],
             )
-    offered.count[i] = count
+    offered.length[i] = count
     aim(offered, i, 0)
 
 
 @njit
 def aim(offered, i, index):
     """Owner i goes to point ``index`` of its offer."""
-    offered.index[i] = index
+    offered.at[i] = index
     offered.best[i], offered.idle[i] = np.inf, 0
 
 
 @njit
 def remaining(offered, position, i):
     """Length [m] of what is left of the way owner i was offered."""
-    at = offered.index[i]
+    at = offered.at[i]
     return offered.rest[i, at] + np.hypot(
         offered.points[i, at, 0] - position[i, 0], offered.points[i, at, 1] - position[i, 1]
     )
@@ -342,11 +340,11 @@ def follow(offered, position, i, sees_next, arrive, closer, patience):
         Whether it still follows. If not, its planner takes over, and the promise stays the
         threshold for other offers until the next goal.
     """
-    at = offered.index[i]
+    at = offered.at[i]
     far = np.hypot(
         offered.points[i, at, 0] - position[i, 0], offered.points[i, at, 1] - position[i, 1]
     )
-    last = at + 1 >= offered.count[i]
+    last = at + 1 >= offered.length[i]
     if far < arrive and last:
         offered.active[i] = False
         offered.vain[i] += 1

@@ -36,26 +36,8 @@ from controllers.helping.goal_sharing import (
 )
 from controllers.helping.patrol import advance
 from controllers.helping.state_sharing import Trouble, calm, untroubled
-from controllers.helping.visibility import cast, move, sees
+from controllers.helping.visibility import RAYS, cast, move, sees
 from mjmr.jit import njit
-
-RAYS = np.arange(32) * (2 * np.pi / 32)
-
-
-class Walls(NamedTuple):
-    """What hides and what stops, edges (m, 4) [m] with the free space on their left.
-
-    Args:
-        sight: Edges that hide.
-        motion: Edges that stop.
-        after: Index of the motion edge after each (m,).
-        before: Index of the motion edge before each (m,).
-    """
-
-    sight: NDArray[np.float64]
-    motion: NDArray[np.float64]
-    after: NDArray[np.int64]
-    before: NDArray[np.int64]
 
 
 class Options(NamedTuple):
@@ -68,7 +50,6 @@ class Options(NamedTuple):
         err_max: Largest relative error of a distance.
         robot_size: Diameter that bounds the error of a bearing [m].
         drop: Share of messages lost.
-        left: VisBug keeps walls on its left; else on its right.
     """
 
     shares_goals: bool = True
@@ -77,7 +58,6 @@ class Options(NamedTuple):
     err_max: float = 0.0
     robot_size: float = 0.44
     drop: float = 0.0
-    left: bool = True
 
 
 class Team(NamedTuple):
@@ -232,8 +212,8 @@ def before(crew, walls, settings, options, rng):
             goal = known.goal[i, 0]
             sees_goal = _looks(crew, i, goal[0], goal[1], walls, settings)
             sees_ghost = True
-            if not sees_goal and known.count[i, 0] > 0:
-                ghost = known.path[i, 0, known.count[i, 0] - 1]
+            if not sees_goal and known.ghosts[i, 0] > 0:
+                ghost = known.path[i, 0, known.ghosts[i, 0] - 1]
                 sees_ghost = _looks(crew, i, ghost[0], ghost[1], walls, settings)
             check_goal(known, crew.own, i, 0, sees_goal, sees_ghost)
         reflect(
@@ -250,7 +230,7 @@ def before(crew, walls, settings, options, rng):
         sees_goal, sees_next, settings, options.shares_state,
     )  # fmt: skip
     crew.counts[mode] += 1
-    if mode == MATE:
+    if mode == MATE and crew.state.mate[0] >= 0:
         if mate < 0:
             crew.follows[min(crew.state.follows[0], 64) - 1] = 0
         crew.follows[min(crew.state.follows[0], 64) - 1] += 1
@@ -258,13 +238,14 @@ def before(crew, walls, settings, options, rng):
 
 
 @njit
-def steer(crew, planner, x, y, walls, settings, left):
+def steer(crew, planner, x, y, walls, settings):
     """One of the paper's planners: a vector of length at most 1 step towards (x, y) [m]."""
     px, py = crew.place[0, 0], crew.place[0, 1]
     if planner == VISBUG:
-        if crew.bug.at[0] == 0:
+        if not visbug.has_path(crew.bug):
             visbug.plan(
-                crew.bug, px, py, x, y, walls.motion, walls.after, walls.before, left
+                crew.bug, px, py, x, y, walls.motion, walls.after, walls.before,
+                settings.left,
             )  # fmt: skip
         tx, ty = visbug.target(crew.bug, px, py, settings.vision, walls.sight)
         far = np.hypot(tx - px, ty - py)
@@ -284,10 +265,10 @@ def steer(crew, planner, x, y, walls, settings, left):
 def _look_around(crew, planner, mode, x, y, walls, settings):
     """Avoid Past counts cells whoever steers, and chooses a heading where it steers."""
     px, py = crew.place[0, 0], crew.place[0, 1]
-    entered = avoid_past.visit(crew.past, px, py, settings.cell)
+    avoid_past.visit(crew.past, px, py, settings.cell)
     if mode != PLAN:
-        crew.past.cell[0] = -2  # choose afresh when it steers again
-    elif entered:
+        crew.past.place[:] = np.inf  # choose afresh when it steers again
+    elif avoid_past.due(crew.past, px, py, settings.cell):
         cast(px, py, avoid_past.ANGLES, 2.0, walls.motion, crew.ranges)
         avoid_past.heading(
             crew.past, px, py, x - px, y - py, avoid_past.ANGLES, crew.ranges, settings.cell,
@@ -366,7 +347,7 @@ def run(crew, planner, goals, cap, walls, settings, options, route, rng, steps, 
             if planner == AVOID_PAST:
                 _look_around(crew, planner, mode, x, y, walls, settings)
             if mode == PLAN:
-                vx, vy = steer(crew, planner, x, y, walls, settings, options.left)
+                vx, vy = steer(crew, planner, x, y, walls, settings)
             else:
                 vx, vy = towards(crew, x, y, settings)
                 visbug.forget_path(crew.bug)

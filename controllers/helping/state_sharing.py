@@ -24,6 +24,7 @@ class Trouble(NamedTuple):
         target: A number for what each robot goes to (n,); another number is another target.
         best: Smallest distance to it so far (n,) [m].
         mate: Whom each robot goes to for help (n,); -1 nobody.
+        waits: Whether it stands where it saw its mate last (n,).
         place: Where it last saw it (n, 2) [m], in its own frame.
         follows: How often each robot went to a mate (n,), since the start.
     """
@@ -34,6 +35,7 @@ class Trouble(NamedTuple):
     target: NDArray[np.int64]
     best: NDArray[np.float64]
     mate: NDArray[np.int64]
+    waits: NDArray[np.bool_]
     place: NDArray[np.float64]
     follows: NDArray[np.int64]
 
@@ -47,6 +49,7 @@ def untroubled(n: int) -> Trouble:
         target=np.full(n, -1, dtype=np.int64),
         best=np.full(n, np.inf),
         mate=np.full(n, -1, dtype=np.int64),
+        waits=np.zeros(n, dtype=np.bool_),
         place=np.zeros((n, 2)),
         follows=np.zeros(n, dtype=np.int64),
     )
@@ -56,7 +59,14 @@ def untroubled(n: int) -> Trouble:
 def calm(state, i):
     """Robot i starts afresh: at a new goal."""
     state.transitions[i], state.pressure[i], state.trouble[i] = 1, 0, False
-    state.target[i], state.best[i], state.mate[i] = -1, np.inf, -1
+    state.target[i], state.best[i] = -1, np.inf
+    leave_mate(state, i)
+
+
+@njit
+def leave_mate(state, i):
+    """Robot i goes elsewhere."""
+    state.mate[i], state.waits[i] = -1, False
 
 
 @njit
@@ -92,7 +102,9 @@ def find_mate(state, i, position, heard, distance, bearing, arrive):
     """Rules 2 and 3: whom robot i goes to, in ``state.mate[i]`` and ``state.place[i]``.
 
     It keeps to the mate it has while that is in sight and not in trouble, else takes the nearest
-    one that is; where it saw its mate last it goes even if the mate has left.
+    one that is. If none is in sight, it goes where it saw its mate last and waits there: the mate
+    stays its target until it is out of trouble (mate -1 then, so that seeing one again is another
+    target and another follow).
 
     Args:
         state: Changed in place.
@@ -107,24 +119,24 @@ def find_mate(state, i, position, heard, distance, bearing, arrive):
         Whether it goes to a mate.
     """
     if not state.trouble[i]:
-        state.mate[i] = -1
+        leave_mate(state, i)
         return False
     mate = state.mate[i]
     if mate >= 0 and not heard[i, mate]:
         far = np.hypot(state.place[i, 0] - position[i, 0], state.place[i, 1] - position[i, 1])
         if far < arrive:
-            state.mate[i] = mate = -1
+            state.mate[i], state.waits[i] = -1, True
+    mate = state.mate[i]
     if mate < 0 or not heard[i, mate] or state.trouble[mate]:
         nearest = np.inf
         for j in range(heard.shape[0]):
             if j != i and heard[i, j] and not state.trouble[j] and distance[i, j] < nearest:
                 nearest, mate = distance[i, j], j
-    if mate >= 0 and mate != state.mate[i]:
-        if state.mate[i] < 0:
-            state.follows[i] += 1
-        state.mate[i] = mate
     if mate < 0:
-        return False
+        return state.waits[i]
+    if state.mate[i] < 0:
+        state.follows[i] += 1
+    state.mate[i], state.waits[i] = mate, False
     if heard[i, mate]:
         state.place[i, 0] = position[i, 0] + distance[i, mate] * np.cos(bearing[i, mate])
         state.place[i, 1] = position[i, 1] + distance[i, mate] * np.sin(bearing[i, mate])

@@ -27,8 +27,8 @@ class Bug(NamedTuple):
 
     Args:
         path: Vertices (k, 2) [m]; ``at[0]`` of them are valid.
-        at: Integers (4,): number of vertices, the one behind the target, whether there is a path,
-            and whether Bug2 found the goal to be out of reach.
+        at: Integers (3,): number of vertices, the one behind the target, and 1 if Bug2 found the
+            goal to be out of reach.
         offset: Of the target from that vertex (1,) [m].
     """
 
@@ -39,13 +39,19 @@ class Bug(NamedTuple):
 
 def bug(vertices: int = 4096) -> Bug:
     """No path yet, room for ``vertices``."""
-    return Bug(np.zeros((vertices, 2)), np.zeros(4, dtype=np.int64), np.zeros(1))
+    return Bug(np.zeros((vertices, 2)), np.zeros(3, dtype=np.int64), np.zeros(1))
 
 
 @njit
 def forget_path(bug2):
     """A new M-line is due: at a new goal, or where the robot did something else in between."""
     bug2.at[:] = 0
+
+
+@njit
+def has_path(bug2):
+    """Whether an M-line was drawn."""
+    return bug2.at[0] > 0
 
 
 @njit
@@ -104,9 +110,9 @@ def plan(bug2, x, y, gx, gy, edges, after, before, left):
     while count < most:
         hit = -1
         for k in range(m):
-            if along[k] > here and along[k] < 1.0 and not leaves[k]:
-                if hit < 0 or along[k] < along[hit]:
-                    hit = k
+            ahead = here < along[k] < 1.0 and not leaves[k]
+            if ahead and (hit < 0 or along[k] < along[hit]):
+                hit = k
         if hit < 0:
             break
         path[count, 0], path[count, 1] = x + along[hit] * dx, y + along[hit] * dy
@@ -119,7 +125,7 @@ def plan(bug2, x, y, gx, gy, edges, after, before, left):
             k = before[k] if left else after[k]
             if k == hit:
                 break
-            if leaves[k] and along[k] > along[hit]:
+            if leaves[k] and along[hit] < along[k] < 1.0:
                 found = True
                 path[count, 0], path[count, 1] = x + along[k] * dx, y + along[k] * dy
                 count += 1
@@ -130,7 +136,7 @@ def plan(bug2, x, y, gx, gy, edges, after, before, left):
     if found:
         path[count, 0], path[count, 1] = gx, gy
         count += 1
-    bug2.at[0], bug2.at[1], bug2.at[2], bug2.at[3] = count, 0, 1, 0 if found else 1
+    bug2.at[0], bug2.at[1], bug2.at[2] = count, 0, 0 if found else 1
     bug2.offset[0] = 0.0
 
 

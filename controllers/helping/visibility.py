@@ -5,11 +5,31 @@ Walls are the edges of a polygon of free space, inflated by the robot's radius, 
 Everything is compiled and goes through all edges: an office has about a hundred.
 """
 
+from typing import NamedTuple
+
 import numpy as np
+from numpy.typing import NDArray
 
 from mjmr.jit import njit
 
+RAYS = np.arange(32) * (2 * np.pi / 32)
 _GAP = 1e-6  # m kept from an edge, so that rounding never puts a robot outside
+
+
+class Walls(NamedTuple):
+    """What hides and what stops.
+
+    Args:
+        sight: Edges that hide (m, 4) [m].
+        motion: Edges that stop (k, 4) [m].
+        after: Index of the motion edge after each (k,).
+        before: Index of the motion edge before each (k,).
+    """
+
+    sight: NDArray[np.float64]
+    motion: NDArray[np.float64]
+    after: NDArray[np.int64]
+    before: NDArray[np.int64]
 
 
 @njit
@@ -101,7 +121,7 @@ def _first_contact(x, y, dx, dy, length, edges):
         if t * into / size < -10.0 * _GAP or t >= way + _GAP * size / into:
             continue
         at = ((ax + t * dx) * ex + (ay + t * dy) * ey) / (size * size)
-        if -1e-9 <= at <= 1.0 + 1e-9:
+        if 0.0 <= at <= 1.0:
             t = max(0.0, t - _GAP * size / into)
             if t < way:
                 hit, way = k, t
@@ -122,8 +142,8 @@ def move(x, y, dx, dy, length, edges, to_nearest_end):
         to_nearest_end: A robot that drives at what it sees clips no more than the corner of a
             wall: met squarely, it slides to the wall's nearer end. Otherwise it stops there.
     """
-    # two walls in a corner can hand it back and forth, hence the limit
-    for _ in range(3):
+    # a corner can hand the robot from wall to wall, hence the limit
+    for _ in range(4):
         way, hit = _first_contact(x, y, dx, dy, length, edges)
         x, y = x + way * dx, y + way * dy
         length -= way
@@ -133,13 +153,19 @@ def move(x, y, dx, dy, length, edges, to_nearest_end):
         size = np.hypot(ex, ey)
         ex, ey = ex / size, ey / size
         along = dx * ex + dy * ey
+        at = (x - edges[hit, 0]) * ex + (y - edges[hit, 1]) * ey
         if to_nearest_end and abs(along) < 0.2:
-            at = (x - edges[hit, 0]) * ex + (y - edges[hit, 1]) * ey
             along = 1.0 if 2.0 * at > size else -1.0
         elif abs(along) < 1e-3:
             break
         sign = 1.0 if along > 0.0 else -1.0
-        dx, dy = sign * ex, sign * ey
+        # no farther than the wall's end: from there the old direction may be free again
+        slide = min(length, (size - at if sign > 0.0 else at) + 10.0 * _GAP)
+        way, hit = _first_contact(x, y, sign * ex, sign * ey, slide, edges)
+        x, y = x + way * sign * ex, y + way * sign * ey
+        length -= way
+        if hit >= 0 and way < _GAP:
+            break
     return x, y
 
 
