@@ -89,7 +89,7 @@ class MarkerFinder:
 
 @dataclass(frozen=True)
 class _Spot:
-    """A spot of one colour: middle [px], height of its rectangle [px], area [px], cut by an edge."""
+    """A spot of one colour: middle, height of its rectangle, area [px], cut by an edge or not."""
 
     x: float
     height: float

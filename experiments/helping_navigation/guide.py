@@ -1,35 +1,40 @@
 """Guide: the explorer's own planner on a real robot, fed by its scans alone."""
 
-import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from controllers.helping import avoid_past, potential_field, visbug
-from controllers.helping.explorer import Settings
+from controllers.helping import RAYS, AvoidPast, PotentialField, Settings, visbug
 from controllers.mapping import ScanMap, free_ranges
-from mjmr.geometry import rotate
 
 Array = NDArray[np.float64]
-RAYS = np.arange(72) * (2 * math.pi / 72)  # of the potential field
-BODY = 0.30  # m: disc that must be free where a planner wants to go
+_BODY, _KEPT = 0.30, 0.03  # m: disc that must be free where a planner wants to go, and short of it
+_RANGE = 3.0  # m
 _PLAN, _SEE = 0.34, 0.27  # m: walls grown for Bug2's path, and for what is in sight of it
 
 
 class Guide:
     """Where to go when neither goal, offer nor mate leads.
 
-    Avoid Past and the potential field get free ways of the body in directions of the robot's own
-    frame. VisBug-21 gets a map, which it does not need for more than what it saw: the walls within
-    its vision, as scans entered them so far. Bug2's path along them is planned again whenever they
-    grow, along the same M-line, and the target stays where it was on it.
+    Avoid Past and the potential field get the free ways of the body along rays in the robot's own
+    frame, as they do in the abstract trials. VisBug-21 gets a map, of which it needs no more than
+    what it saw: the walls within its vision, as scans entered them so far. Bug2's path along them
+    is planned again whenever they grow, along the same M-line, and the target stays where it was
+    on it.
+
+    Attributes:
+        unreachable: How often Bug2 found the goal walled in, by what the map had then.
     """
 
-    def __init__(self, planner: str, settings: Settings):
-        """Args: planner: As the study names it. settings: Numbers."""
+    def __init__(self, planner: str, settings: Settings, size: Array):
+        """Args: planner: As the study names it. settings: Numbers. size: Of the office (2,) [m]."""
         self.planner, self._settings = planner, settings
-        self._been = avoid_past.past(np.full(2, -40.0), np.full(2, 40.0), settings.cell)
+        self._by_rays = (
+            PotentialField(settings)
+            if planner == "potential-field"
+            else AvoidPast(settings, size=size)
+        )
         self._bug = visbug.bug()
         vision = settings.vision
         self._walls = ScanMap(radius=_PLAN, reach=vision + 0.5)
@@ -43,15 +48,20 @@ class Guide:
 
     def new_goal(self) -> None:
         """Start afresh."""
-        avoid_past.forget_past(self._been)
+        self._by_rays.begin()
         self._line = None
 
-    def interrupt(self) -> None:
-        """Something else led in between: VisBug draws a new M-line when it is asked again."""
+    def pause(self, pose: Array) -> None:
+        """Something else leads at this step: VisBug draws a new M-line when it is asked again.
+
+        Args:
+            pose: Own (3,) in F_i.
+        """
+        self._by_rays.pause(pose[:2])
         self._line = None
 
     def look(self, pose: Array, ranges: Array, angles: Array) -> None:
-        """Remember where one is and what one sees.
+        """Remember what one sees.
 
         Args:
             pose: Own (3,) [m, m, rad] in F_i.
@@ -62,43 +72,22 @@ class Guide:
             self._walls.add(pose, ranges, angles)
             self._sight.add(pose, ranges, angles)
 
-    def step(self, pose: Array, goal: Array, ranges: Array, angles: Array) -> tuple[Array, bool]:
-        """Where to go now.
+    def step(self, pose: Array, goal: Array, ranges: Array, angles: Array) -> Array:
+        """Where to go now: a vector (2,) in the axes of F_i, in motion steps, no longer than one.
 
         Args:
             pose: Own (3,) in F_i.
             goal: (2,) [m] in F_i.
             ranges: Scan (b,) [m].
             angles: Of its beams (b,) [rad], body frame.
-
-        Returns:
-            A vector (2,): a place [m] in F_i if the flag that follows says so, else a direction.
         """
-        x, y, s = float(pose[0]), float(pose[1]), self._settings
-        offset = goal - pose[:2]
         if self.planner == "visbug":
-            return self._follow_bug(pose[:2], goal), True
-        own = RAYS if self.planner == "potential-field" else avoid_past.ANGLES
+            way = self._follow_bug(pose[:2], goal) - pose[:2]
+            return way / max(float(np.hypot(*way)), self._settings.step)
         free = free_ranges(
-            ranges, np.cos(angles), np.sin(angles), own - pose[2], BODY, max(s.reach, 1.5)
+            ranges, np.cos(angles), np.sin(angles), RAYS - pose[2], _BODY, _RANGE + _KEPT
         )
-        if self.planner == "potential-field":
-            way = potential_field.direction(offset[0], offset[1], own, free, s.reach, s.gain)
-            return np.array(way), False
-        held = avoid_past.ANGLES[self._been.heading[0]]
-        entered = avoid_past.visit(self._been, x, y, s.cell)
-        blocked = free[int(self._been.heading[0])] < 0.1
-        if entered or blocked:
-            way = avoid_past.heading(
-                self._been, x, y, offset[0], offset[1], own, free, s.cell, s.bias
-            )
-            return np.array(way), False
-        return rotate([1.0, 0.0], held), False
-
-    def visit(self, pose: Array) -> None:
-        """Count where one is for Avoid Past, whoever leads."""
-        if self.planner == "avoid-past":
-            avoid_past.visit(self._been, float(pose[0]), float(pose[1]), self._settings.cell)
+        return self._by_rays.step(pose[:2], goal, np.maximum(free - _KEPT, 0.0))
 
     def _follow_bug(self, at: Array, goal: Array) -> Array:
         if self._line is None or self._version != self._walls.version:
@@ -113,8 +102,8 @@ class Guide:
             edges, after, before = self._edges
             (x, y), (gx, gy) = self._line
             kept = self._progress()
-            visbug.plan(self._bug, x, y, gx, gy, edges, after, before, True)
-            self.unreachable += int(self._bug.at[3])
+            visbug.plan(self._bug, x, y, gx, gy, edges, after, before, self._settings.left)
+            self.unreachable += int(self._bug.at[2])
             if not fresh:
                 self._resume(kept)
         tx, ty = visbug.target(self._bug, at[0], at[1], self._settings.vision, self._sight_edges)

@@ -19,6 +19,7 @@ from mjmr.faults import Fault
 from mjmr.geometry import wrap_angle
 
 Array = NDArray[np.float64]
+ARRIVE = 0.25  # m: a body reaches a place no more exactly where another makes way
 AT_POST = 0.15  # m: a supporter that stands is where it belongs
 STAND_OFF = 0.9  # m: R1 keeps from a mate it goes after
 MODES = {GOAL: "sees its goal", OFFER: "follows an offer", MATE: "follows a mate", PLAN: "plans"}
@@ -52,7 +53,7 @@ class JourneySetup:
     shares_goals: bool = True
     leg_time: float = 900.0
     faults: Sequence[Fault] = ()
-    settings: Settings = Settings(arrive=0.25)
+    settings: Settings = Settings(arrive=ARRIVE)
 
 
 @dataclass
@@ -92,7 +93,7 @@ class Journey:
         self.minds = [
             Mind(i, n, ghosts, setup.settings, setup.shares_state and i == 0) for i in range(n)
         ]
-        self.guide = Guide(setup.planner, setup.settings)
+        self.guide = Guide(setup.planner, setup.settings, np.asarray(setup.crew.office["size"]))
         self._patrol = Patrol(setup.routes, phase=setup.phase) if len(setup.routes) else None
         self._stands = np.array([len(route) == 1 for route in setup.routes])
         self.legs: list[Leg] = []
@@ -102,7 +103,6 @@ class Journey:
         self._direction = np.array([1.0, 0.0])
         self._hears = np.zeros(n, dtype=bool)
         self._track = _Track(self.crew)
-        self.messages = 0
 
     def run(self, duration: float = math.inf) -> list[Leg]:
         """Visit all targets, or as many as ``duration`` [s] allows; returns the legs."""
@@ -173,18 +173,19 @@ class Journey:
         self.guide.look(pose, crew.ranges[0], crew.angles)
         if self.mode == PLAN:
             self.legs[-1].calls += 1
-            way, place = self.guide.step(pose, target, crew.ranges[0], crew.angles)
-            self._place = way if place else None
-            self._direction = way
+            self._direction = self.guide.step(pose, target, crew.ranges[0], crew.angles)
+            self._place = None
         else:
-            self.guide.visit(pose)
-            self.guide.interrupt()
+            self.guide.pause(pose)
             self._place = target
 
     def _wish(self) -> tuple[float, float]:
         """Direction [rad], body frame, and distance [m] of where R1 goes."""
         if self._place is not None:
             return self.crew.bearing_to(0, self._place)
+        size = float(np.hypot(*self._direction))
+        if size < 0.05:  # in balance
+            return math.nan, 1.0
         way = math.atan2(self._direction[1], self._direction[0])
         return float(wrap_angle(way - self.crew.pose[0, 2])), 1.0
 

@@ -103,7 +103,7 @@ class Mind:
         for owner in np.flatnonzero(known.number[i]):
             if owner == i:
                 continue
-            count = known.count[i, owner]
+            count = known.ghosts[i, owner]
             ghost = known.path[i, owner, max(count - 1, 0)]
             goal_sharing.check_goal(
                 known, position, i, owner, sees(known.goal[i, owner]), count == 0 or sees(ghost)

@@ -110,7 +110,7 @@ class TeammateSight(Sensor):
 
 
 def radio_sight(simulation: Any, radius: float) -> NDArray[np.bool_]:
-    """Which masts reach each other (n, n): a free line no longer than ``radius`` [m]; for radios."""
+    """Which masts reach each other (n, n), for radios: a free line of at most ``radius`` [m]."""
     scene = simulation.rays
     scene.show(simulation.visible_state())
     masts = robot_points(simulation, MARKER_HEIGHT)

@@ -30,7 +30,7 @@ def office(name: str) -> Office:
 def tour(
     place: Any, targets: ArrayLike, *, planner: str, robots: int, chain: bool, seed: int,
     lost: bool = False, err_max: float = 0.0, radio_loss: float = 0.0, wheel_error: float = 0.0,
-    leg_time: float = 900.0, start: ArrayLike = _START, dead_after: float = np.inf,
+    leg_time: float = 900.0, start: tuple[float, float] = _START, dead_after: float = np.inf,
 ) -> JourneySetup:  # fmt: skip
     """R1 visits targets, the others go round the office's first route.
 
@@ -55,7 +55,7 @@ def tour(
     first = int(rng.integers(len(route)))
     phase = [(first + len(route) * k // max(helpers, 1)) % len(route) for k in range(helpers)]
     # on the way to the first waypoint, where that is farthest from R1
-    starts = [(*start, 0.0)]
+    starts: list[tuple[float, ...]] = [(*start, 0.0)]
     for p in phase:
         before, ahead = route[p - 1], route[p]
         away = ahead - before
@@ -63,6 +63,7 @@ def tour(
         clear = np.array([min(np.hypot(*(s - q[:2])) for q in starts) for s in spots])
         starts.append((*spots[int(np.argmax(clear))], float(np.arctan2(away[1], away[0]))))
     frames = np.zeros((robots, 3))
+    frames[0] = starts[0]  # R1 knows where it is, or it would not know where its goals are
     draw = rng.uniform([-20, -20, -np.pi], [20, 20, np.pi], (helpers, 3))
     if lost:
         frames[1:] = draw
@@ -108,7 +109,7 @@ def trap(
     route = np.asarray(place.routes[0])
     first = int(rng.integers(len(route)))
     phase = [(first + len(route) * k // max(helpers, 1)) % len(route) for k in range(helpers)]
-    starts = [(*TRAP_START, 0.0)]
+    starts: list[tuple[float, ...]] = [(*TRAP_START, 0.0)]
     for p in phase:
         away = route[p] - route[p - 1]
         starts.append((*(route[p - 1] + 0.5 * away), float(np.arctan2(away[1], away[0]))))
@@ -116,7 +117,7 @@ def trap(
         crew=CrewSetup(
             office={"size": place.size, "walls": place.walls},
             starts=np.array(starts),
-            frames=np.zeros((robots, 3)),
+            frames=np.vstack([starts[0], np.zeros((helpers, 3))]),
             marks=np.array([TRAP_GOAL]),
         ),
         targets=np.array([TRAP_GOAL]),
@@ -149,6 +150,7 @@ def standing_chain(
     starts = np.array([(*p, rng.uniform(-np.pi, np.pi)) for p in (CHAIN_START, *CHAIN_POSTS)])
     starts[0, :2] += rng.uniform(-0.2, 0.2, 2)
     frames = np.zeros((len(starts), 3))
+    frames[0] = starts[0]
     draw = rng.uniform([-20, -20, -np.pi], [20, 20, np.pi], (len(starts) - 1, 3))
     if lost:
         frames[1:] = draw

@@ -47,7 +47,7 @@ def say(known: Memory, i: int, trouble: bool, position: Array, bearing: Array) -
     """
     parts = [np.array([float(trouble), *position]), bearing]
     for o in np.flatnonzero(known.number[i]):
-        count = int(known.count[i, o])
+        count = int(known.ghosts[i, o])
         parts.append(
             np.array([
                 o, known.number[i, o], *known.goal[i, o], known.distance[i, o],
@@ -70,10 +70,10 @@ def read(message: Array, n: int) -> Words:
 
 def enter(known: Memory, j: int, words: Words) -> None:
     """Put what robot j told into its row of one's own memory, which others' rows are copies of."""
-    known.number[j], known.count[j] = 0, 0
+    known.number[j], known.ghosts[j] = 0, 0
     known.distance[j] = known.ghost_distance[j] = np.inf
     for row in words.owners:
         o, count = int(row[0]), int(row[6])
         known.number[j, o], known.goal[j, o] = int(row[1]), row[2:4]
-        known.distance[j, o], known.ghost_distance[j, o], known.count[j, o] = row[4], row[5], count
+        known.distance[j, o], known.ghost_distance[j, o], known.ghosts[j, o] = row[4], row[5], count
         known.path[j, o, :count] = row[_OWNER:].reshape(-1, 2)

@@ -123,7 +123,7 @@ def test_mutual_bearings_place_a_told_point():
 
 def test_a_message_is_read_as_it_was_said():
     known = Mind(1, 3, CHAIN, Settings(), False).known
-    known.number[1, 0], known.goal[1, 0], known.count[1, 0] = 6, (1.5, 2.5), 3
+    known.number[1, 0], known.goal[1, 0], known.ghosts[1, 0] = 6, (1.5, 2.5), 3
     known.distance[1, 0], known.ghost_distance[1, 0] = 7.5, 6.25
     known.path[1, 0, :3] = [[1, 2], [3, 4], [5, 6]]
     bearing = np.array([0.5, np.nan, -1.0])
@@ -133,7 +133,7 @@ def test_a_message_is_read_as_it_was_said():
     assert heard.trouble
     np.testing.assert_array_equal(heard.position, [9, 8])
     np.testing.assert_array_equal(heard.bearing, bearing)
-    for name in ("number", "goal", "distance", "ghost_distance", "count"):
+    for name in ("number", "goal", "distance", "ghost_distance", "ghosts"):
         np.testing.assert_array_equal(getattr(mine, name)[1], getattr(known, name)[1])
     np.testing.assert_array_equal(mine.path[1, 0, :3], known.path[1, 0, :3])
 

@@ -63,7 +63,7 @@ def test_bug2_goes_round_a_wall_it_mapped():
     bug = visbug.bug()
     visbug.plan(bug, 0.0, 0.0, 4.0, 0.0, *walls.edges(), True)
     path = shapely.LineString(bug.path[: bug.at[0]])
-    assert bug.at[3] == 0
+    assert bug.at[2] == 0
     assert path.distance(shapely.LineString(wall[0])) > 0.22
     # with the wall on the left it passes on the right, where y is negative
     assert path.bounds[1] == pytest.approx(-1.3, abs=0.1)
