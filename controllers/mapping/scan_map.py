@@ -1,4 +1,4 @@
-"""ScanMap: walls as scans show them, in the robot's own frame, as polygons of inflated obstacles."""
+"""ScanMap: walls as scans show them, in the robot's own frame, as polygons of grown obstacles."""
 
 import math
 

@@ -6,8 +6,6 @@ the markers is compared with where the markers were, and with the model of secti
 
 import contextlib
 import math
-from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +16,9 @@ from controllers.perception.markers import Marker, MarkerFinder
 from experiments.helping_navigation.courtesy import Courtesy
 from experiments.helping_navigation.perception import TeammateSight, radio_sight
 from experiments.helping_navigation.physical_world import (
+    CAMERA_HEIGHT,
+    CAMERA_OFFSET,
+    CAMERAS,
     MARKER_COLOURS,
     MARKER_HEIGHT,
     MARKER_LENGTH,
@@ -27,23 +28,25 @@ from experiments.helping_navigation.physical_world import (
     office_world,
 )
 from mjmr.geometry import wrap_angle
+from mjmr.office import Office
 from mjmr.radio import Radio
 from mjmr.sensors.line_of_sight import robot_points
 from mjmr.sensors.localizer import Localizer
 from mjmr.simulation import Simulation
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 ROBOT_SIZE = 0.44  # m: length of the hull, the paper's robotsize
 BINS = (0.0, 2.0, 4.0, 6.0, 8.0)  # m
 _PERIOD, _LOOKS = 0.1, 1.0  # s, Hz
 Metrics = dict[str, float | int]
 
 
-def run(office: Mapping[str, Any], looks: int, radius: float, seed: int) -> Metrics:
+def run(place: Office, looks: int, radius: float, seed: int) -> Metrics:
     """Patrol and look round ``looks`` times.
 
     Args:
-        office: ``size`` (2,), ``walls`` (k, 4) and ``routes`` of an office.
+        place: Where.
         looks: Of each robot, one a second.
         radius: Of sight [m]: what is further off does not count.
         seed: Of the trial.
@@ -52,12 +55,12 @@ def run(office: Mapping[str, Any], looks: int, radius: float, seed: int) -> Metr
         See :func:`compare`.
     """
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(27,)))
-    route = np.array(office["routes"][0], dtype=np.float64)
+    route = np.array(place.routes[0])
     n = len(MARKER_COLOURS)
-    phase = [(int(rng.integers(len(route))) + k * len(route) // n) % len(route) for k in range(1)]
-    phase = [(phase[0] + k * len(route) // n) % len(route) for k in range(n)]
+    first = int(rng.integers(len(route)))
+    phase = [(first + k * len(route) // n) % len(route) for k in range(n)]
     starts = _starts(route, phase, rng)
-    world = office_world(office["size"], office["walls"])
+    world = office_world(place.size, place.walls)
     robots = add_team(world, starts)
     robots.mount(Localizer(rate=1 / _PERIOD, position_noise=0.0, yaw_noise=0.0))
     cameras = mount_cameras(robots, rate=_LOOKS)
@@ -87,7 +90,7 @@ def run(office: Mapping[str, Any], looks: int, radius: float, seed: int) -> Metr
     return compare(*(np.array(column) for column in zip(*rows, strict=True)), radius=radius)
 
 
-def compare(true: Array, clear: Array, part: Array, seen: Array, *, radius: float) -> Metrics:
+def compare(true: Array, clear: Flags, part: Flags, seen: Array, *, radius: float) -> Metrics:
     """What was seen against what was so.
 
     Args:
@@ -154,7 +157,18 @@ class _Geometry:
 
     def __init__(self, simulation: Simulation):
         self._simulation = simulation
-        self.now: tuple[Array, Array, Array] = (np.empty(0), np.empty(0), np.empty(0))
+        nobody = np.zeros((0, 0), dtype=bool)
+        self.now: tuple[Array, Flags, Flags] = (np.empty((0, 0, 2)), nobody, nobody)
+        self._cameras = np.array(
+            [
+                [
+                    CAMERA_OFFSET * np.cos(k * np.pi / 2),
+                    CAMERA_OFFSET * np.sin(k * np.pi / 2),
+                    CAMERA_HEIGHT - MARKER_HEIGHT,
+                ]
+                for k in range(len(CAMERAS))
+            ]
+        )
         simulation.observe(self._look)
 
     def _look(self) -> None:
@@ -175,11 +189,7 @@ class _Geometry:
         side = np.stack([-away[..., 1], away[..., 0]], axis=-1) / length * MARKER_RADIUS
         part = clear.copy()
         for k in range(len(masts)):
-            eyes = (
-                masts[k]
-                + np.array([[0.08, 0, 0.2], [-0.08, 0, 0.2], [0, 0.08, 0.2], [0, -0.08, 0.2]])
-                @ turns[k].T
-            )
+            eyes = masts[k] + self._cameras @ turns[k].T
             own = np.full(len(eyes), k)
             for sign in (-1.0, 1.0):
                 edge = masts.copy()
