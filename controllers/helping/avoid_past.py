@@ -25,7 +25,7 @@ class Past(NamedTuple):
     """Where one robot has been.
 
     Args:
-        visits: Entries of each cell (nx, ny).
+        visits: Entries of each cell, and choices made in it (nx, ny).
         low: Corner of the grid (2,) [m], own frame.
         cell: Its present cell (2,); -1 before the first.
         place: Where it chose its heading (2,) [m]; far off if it has to choose.
@@ -85,10 +85,10 @@ def due(been, x, y, size):
 
 @njit
 def heading(been, x, y, tx, ty, angles, ranges, size, bias):
-    """Choose a heading and hold it; returns its unit vector.
+    """Choose a heading and hold it; returns its unit vector. To be called after :func:`visit`.
 
     Args:
-        been: Its heading is changed in place.
+        been: Changed in place.
         x: Own position [m].
         y: Own position [m].
         tx: Offset of the target [m].
@@ -98,6 +98,7 @@ def heading(been, x, y, tx, ty, angles, ranges, size, bias):
         size: Of a cell [m].
         bias: What heading straight away from the target costs against straight at it, in visits.
     """
+    been.visits[been.cell[0], been.cell[1]] += 1  # to choose twice in a cell is to be there twice
     here = _visits(been, x, y, size)
     far = max(np.hypot(tx, ty), 1e-9)
     best, chosen = np.inf, 0

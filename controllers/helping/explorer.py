@@ -43,7 +43,7 @@ class Settings(NamedTuple):
     step: float = 0.15
     sight: float = 8.0
     epsilon: float = 0.3
-    arrive: float = 0.02
+    arrive: float = 0.001
     closer: float = 0.075
     patience: int = 10
     level: int = 20

@@ -104,7 +104,7 @@ class VisBug:
         walls = self._walls
         if not visbug.has_path(self._bug):
             visbug.plan(
-                self._bug, x, y, target[0], target[1], walls.motion, walls.after, walls.before,
+                self._bug, x, y, target[0], target[1], walls.path, walls.after, walls.before,
                 self._settings.left,
             )  # fmt: skip
         point = visbug.target(self._bug, x, y, self._settings.vision, walls.sight)

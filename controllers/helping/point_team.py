@@ -244,7 +244,7 @@ def steer(crew, planner, x, y, walls, settings):
     if planner == VISBUG:
         if not visbug.has_path(crew.bug):
             visbug.plan(
-                crew.bug, px, py, x, y, walls.motion, walls.after, walls.before,
+                crew.bug, px, py, x, y, walls.path, walls.after, walls.before,
                 settings.left,
             )  # fmt: skip
         tx, ty = visbug.target(crew.bug, px, py, settings.vision, walls.sight)

@@ -21,13 +21,16 @@ class Walls(NamedTuple):
 
     Args:
         sight: Edges that hide (m, 4) [m].
-        motion: Edges that stop (k, 4) [m].
-        after: Index of the motion edge after each (k,).
-        before: Index of the motion edge before each (k,).
+        motion: Edges that stop (k, 4) [m]; nearer to the robot than those that hide, so that it is
+            never on the very edge of what it sees by.
+        path: Edges that are followed along walls (k, 4) [m]; a little nearer still.
+        after: Index of the path edge after each (k,).
+        before: Index of the path edge before each (k,).
     """
 
     sight: NDArray[np.float64]
     motion: NDArray[np.float64]
+    path: NDArray[np.float64]
     after: NDArray[np.int64]
     before: NDArray[np.int64]
 
