@@ -81,6 +81,8 @@ class Journey:
     Attributes:
         legs: One a target that was begun.
         mode: Of R1 now.
+        decisions: Motion steps so far.
+        follows: Length of each follow of a mate [motion steps].
     """
 
     def __init__(self, setup: JourneySetup, seed: int):
@@ -95,6 +97,8 @@ class Journey:
         ]
         self.guide = Guide(setup.planner, setup.settings, np.asarray(setup.crew.office["size"]))
         self._patrol = Patrol(setup.routes, phase=setup.phase) if len(setup.routes) else None
+        self.decisions = 0
+        self.follows: list[int] = []
         self._stands = np.array([len(route) == 1 for route in setup.routes])
         self.legs: list[Leg] = []
         self.mode = PLAN
@@ -169,6 +173,11 @@ class Journey:
         me = self.minds[0]
         sees_goal = crew.sees(0, me.known.goal[0, 0], KEPT if self.mode == GOAL else CLEAR)
         self.mode, target = me.decide(lambda p: crew.sees(0, p), sees_goal, self._hears)
+        self.decisions += 1
+        if self.mode == MATE and me.state.mate[0] >= 0:
+            while len(self.follows) < me.state.follows[0]:
+                self.follows.append(0)
+            self.follows[-1] += 1
         pose = crew.pose[0]
         self.guide.look(pose, crew.ranges[0], crew.angles)
         if self.mode == PLAN:
@@ -211,6 +220,11 @@ class Journey:
         leg.reached, leg.seconds = reached, now - self._since
         leg.metres = self._track.metres - self._from
         leg.miss = float(np.hypot(*(self._track.place - self._goal)))
+
+    @property
+    def skipped(self) -> int:
+        """Waypoints that patrols gave up."""
+        return 0 if self._patrol is None else int(self._patrol.skipped.sum())
 
     def caption(self) -> str:
         """What R1 does, for films."""
