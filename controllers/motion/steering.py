@@ -34,8 +34,8 @@ class SteeringConfig:
     """
 
     speed: float = 0.5
-    radius: float = 0.30
-    robot_radius: float = 0.31
+    radius: float = 0.32
+    robot_radius: float = 0.30
     look_ahead: float = 0.6
     braking: float = 0.7
     gain: float = 4.0

@@ -27,8 +27,8 @@ class YieldingConfig:
 
     reach: float = 1.5
     width: float = 0.66
-    radius: float = 0.30
-    robot_radius: float = 0.31
+    radius: float = 0.32
+    robot_radius: float = 0.30
     step: float = 0.5
 
 

@@ -9,9 +9,9 @@ from controllers.helping import RAYS, AvoidPast, PotentialField, Settings, visbu
 from controllers.mapping import ScanMap, free_ranges
 
 Array = NDArray[np.float64]
-_BODY, _KEPT = 0.30, 0.03  # m: disc that must be free where a planner wants to go, and short of it
+_BODY, _KEPT = 0.32, 0.02  # m: disc that must be free where a planner wants to go, and short of it
 _RANGE = 3.0  # m
-_PLAN, _SEE = 0.34, 0.27  # m: walls grown for Bug2's path, and for what is in sight of it
+_PLAN, _SEE = 0.36, 0.28  # m: walls grown for Bug2's path, and for what is in sight of it
 
 
 class Guide:

@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 Metrics = dict[str, float | int | str]
 STEP = 0.15  # m: a motion step of the abstract trials
 _CAP = 6000  # motion steps after which the point robot gives a target up
-_POINT_CLEARANCE = 0.30  # m: of the point robot that is compared with a Pioneer
+_POINT_CLEARANCE = 0.32  # m: of the point robot that is compared with a Pioneer
 LOSS = 0.2  # of messages, where they get lost
 
 
