@@ -24,7 +24,9 @@ Array = NDArray[np.float64]
 PERIOD = 0.1  # s: of the drives and of making way
 STEP_TICKS = 3  # ticks a motion step takes: 0.15 m at 0.5 m/s
 CLEAR = 0.32  # m: half of the lane that must be free for a place to be in sight
-KEPT = 0.22  # m: the same for a goal already in sight, which a robot in its turns may else lose
+# the same for a goal in sight already, which a robot in its turns may else lose, or that others saw
+# from where it goes: it gets there give or take ten centimetres
+KEPT = 0.22  # m
 
 
 @dataclass(frozen=True, kw_only=True)

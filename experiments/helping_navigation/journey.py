@@ -19,7 +19,7 @@ from mjmr.faults import Fault
 from mjmr.geometry import wrap_angle
 
 Array = NDArray[np.float64]
-ARRIVE = 0.25  # m: a body reaches a place no more exactly where another makes way
+ARRIVE = 0.10  # m: at a ghost, more exactly than which no body gets
 AT_POST = 0.15  # m: a supporter that stands is where it belongs
 STAND_OFF = 0.9  # m: R1 keeps from a mate it goes after
 MODES = {GOAL: "sees its goal", OFFER: "follows an offer", MATE: "follows a mate", PLAN: "plans"}
@@ -171,7 +171,7 @@ class Journey:
         self._hears[:] = False
         self._hears[[sender for sender, _ in inbox[0]]] = True
         me = self.minds[0]
-        sees_goal = crew.sees(0, me.known.goal[0, 0], KEPT if self.mode == GOAL else CLEAR)
+        sees_goal = crew.sees(0, me.known.goal[0, 0], KEPT if self.mode in (GOAL, OFFER) else CLEAR)
         self.mode, target = me.decide(lambda p: crew.sees(0, p), sees_goal, self._hears)
         self.decisions += 1
         if self.mode == MATE and me.state.mate[0] >= 0:
