@@ -39,7 +39,8 @@ class CrewSetup:
         frames: Poses (n, 3) at which the robots' own frames F_i have their bodies at the start:
             what a robot takes its pose for.
         sight: Radius of sight and radio [m].
-        err_max: Of distances of teammates, see :class:`TeammateSight`.
+        noisy: Whether teammates are misperceived, see :class:`TeammateSight`.
+        err_max: Of their distances.
         radio_loss: Probability that a message in reach is lost.
         wheel_error: Relative error of the left wheel's radius, and minus that of the right one's,
             that odometry does not know of.
@@ -52,6 +53,7 @@ class CrewSetup:
     starts: Array
     frames: Array
     sight: float = 8.0
+    noisy: bool = False
     err_max: float = 0.0
     radio_loss: float = 0.0
     wheel_error: float = 0.0
@@ -85,7 +87,9 @@ class Crew:
         noise = setup.localizer_noise
         self.robots.mount(Localizer(rate=1 / PERIOD, position_noise=noise[0], yaw_noise=noise[1]))
         self.eyes = self.world.mount(
-            TeammateSight(radius=setup.sight, err_max=setup.err_max, rate=1 / PERIOD)
+            TeammateSight(
+                radius=setup.sight, noisy=setup.noisy, err_max=setup.err_max, rate=1 / PERIOD
+            )
         )
         self.simulation = Simulation(
             self.world, seed=seed, control_period=PERIOD, dt_max=setup.dt_max

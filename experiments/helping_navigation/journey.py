@@ -19,6 +19,7 @@ from mjmr.faults import Fault
 from mjmr.geometry import wrap_angle
 
 Array = NDArray[np.float64]
+ASKING = 1.0  # s: R1 stands so long with a new goal if there is somebody to answer
 ARRIVE = 0.10  # m: at a ghost, more exactly than which no body gets
 AT_POST = 0.15  # m: a supporter that stands is where it belongs
 STAND_OFF = 0.9  # m: R1 keeps from a mate it goes after
@@ -123,6 +124,7 @@ class Journey:
                     break
                 if now - self._since > setup.leg_time and not self._next_target(now):
                     break
+                self._talk()
                 if k % STEP_TICKS == 0:
                     self._step(now)
                 wish, reach = np.full(n, np.nan), np.ones(n)
@@ -151,8 +153,8 @@ class Journey:
                 self._close_leg(most, False)
         return self.legs
 
-    def _step(self, now: float) -> None:
-        """One motion step: talk, look, decide."""
+    def _talk(self) -> None:
+        """Hear what was said a tick ago, look, and say what is known now."""
         crew, setup = self.crew, self.setup
         inbox = [
             [(m.sender, np.asarray(m.payload)) for m in crew.radio.receive(i)]
@@ -170,7 +172,10 @@ class Journey:
                 crew.radio.broadcast(i, words)
         self._hears[:] = False
         self._hears[[sender for sender, _ in inbox[0]]] = True
-        me = self.minds[0]
+
+    def _step(self, now: float) -> None:
+        """One motion step of R1: decide, and let the planner lead if nothing else does."""
+        crew, me = self.crew, self.minds[0]
         sees_goal = crew.sees(0, me.known.goal[0, 0], KEPT if self.mode in (GOAL, OFFER) else CLEAR)
         self.mode, target = me.decide(lambda p: crew.sees(0, p), sees_goal, self._hears)
         self.decisions += 1
@@ -180,7 +185,10 @@ class Journey:
             self.follows[-1] += 1
         pose = crew.pose[0]
         self.guide.look(pose, crew.ranges[0], crew.angles)
-        if self.mode == PLAN:
+        asks = now - self._since < ASKING and self._hears.any()
+        if self.mode == PLAN and asks:
+            self._direction, self._place = np.zeros(2), None
+        elif self.mode == PLAN:
             self.legs[-1].calls += 1
             self._direction = self.guide.step(pose, target, crew.ranges[0], crew.angles)
             self._place = None

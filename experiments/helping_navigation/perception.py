@@ -19,13 +19,14 @@ class TeammateSight(Sensor):
     """What a camera that finds the teammates' markers tells each robot of the team.
 
     A teammate is in sight if the line between the two masts is free of walls and no longer than
-    the sight radius. Errors are those of section 6.1 of the paper: a distance is off by a share
-    uniform in +-``err_max``; if ``err_max`` is not zero, a bearing is off by up to the angle that
-    half the robot's size fills at that distance, uniform too.
+    the sight radius. Errors, if it is noisy, are those of section 6.1 of the paper: a distance is
+    off by a share uniform in +-``err_max``, a bearing by up to the angle that half the robot's
+    size fills at that distance, uniform too.
 
     Attributes:
         radius: Of sight [m].
-        err_max: Largest relative error of a distance; 0: exact distances and bearings.
+        noisy: Whether there are errors.
+        err_max: Largest relative error of a distance.
         robot_size: Width of a robot [m], what bounds a bearing's error.
     """
 
@@ -36,6 +37,7 @@ class TeammateSight(Sensor):
         self,
         *,
         radius: float,
+        noisy: bool = False,
         err_max: float = 0.0,
         robot_size: float = 0.44,
         rate: float = 10.0,
@@ -45,7 +47,8 @@ class TeammateSight(Sensor):
 
         Args:
             radius: Of sight [m].
-            err_max: Share, 0 to 1.
+            noisy: Whether there are errors.
+            err_max: Share, 0 to 1; of no consequence unless noisy.
             robot_size: [m].
             rate: Looks a second [Hz].
             phase: Instant of the first [s].
@@ -61,6 +64,7 @@ class TeammateSight(Sensor):
         if not 0 <= err_max < 1:
             raise InvalidInputError(f"err_max is a share, 0 or more and below 1; got {err_max}")
         self.radius, self.err_max, self.robot_size = float(radius), float(err_max), robot_size
+        self.noisy = noisy
 
     def read(self) -> Array:
         """Newest look (n, n, 2): distance [m] and bearing [rad] of each teammate.
@@ -95,7 +99,7 @@ class TeammateSight(Sensor):
         distance = np.hypot(apart[..., 0], apart[..., 1])
         bearing = np.arctan2(apart[..., 1], apart[..., 0])
         seen = clear & (distance <= self.radius) & (robots[:, None] != robots)
-        if self.err_max > 0:
+        if self.noisy:
             draw = 2.0 * self._noise.sample(number) - 1.0
             bound = np.arctan(self.robot_size / 2 / np.maximum(distance, 1e-9))
             distance = distance * (1.0 + self.err_max * draw[..., 0])
