@@ -36,6 +36,7 @@ _WHERE = {
     "Camera": "mjmr.sensors.camera",
     "Compass": "mjmr.sensors.compass",
     "Film": "mjmr.film",
+    "FilmOptions": "mjmr.film_options",
     "Fault": "mjmr.faults",
     "ForceTorque": "mjmr.sensors.force_torque",
     "Group": "mjmr.group",

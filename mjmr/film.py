@@ -22,7 +22,7 @@ from mjmr.video import VideoWriter
 
 MAX_SECONDS = 60.0
 _HEADER = 44
-_TRAIL = 1.2  # s
+_TRAIL_POINTS = 400
 
 
 class Film:
@@ -39,7 +39,8 @@ class Film:
         Args:
             shown: Recording or footage.
             label: Written in its corner.
-            changes: Of the film's options, for this panel: ``camera`` and ``follow``.
+            changes: Of the film's options, for this panel: ``camera``, ``follow`` and
+                ``trail``.
         """
         footage = shown.footage() if isinstance(shown, Recording) else shown
         self._panels.append((footage, label, dataclasses.replace(self.options, **changes)))
@@ -206,8 +207,7 @@ class _Panel:
         renderer = self._renderer
         image = renderer.picture(data, self._camera(index))
         view = renderer.view()
-        back = max(0, index - round(_TRAIL / footage.period))
-        draw_trails(image, view, footage.poses[back : index + 1 : 3, :, :2], self._colours)
+        draw_trails(image, view, self._track(index), self._colours)
         draw_notes(image, view, poses, footage.radii, footage.note(index), self._colours)
         heads = view.on_floor(poses[:, :2], z=0.16)
         for i, colour in enumerate(self._colours):
@@ -215,6 +215,16 @@ class _Panel:
         draw_text(image, self._label, (14, 26), 0.6)
         draw_text(image, footage.caption(index), (14, renderer.height - 14), 0.55)
         return image
+
+    def _track(self, index: int) -> NDArray[np.float64]:
+        """Where the robots have been (k, n, 2), as far back as trails last."""
+        poses, trail = self._footage.poses, self._options.trail
+        steps = trail / self._footage.period
+        back = 0 if steps >= index else index - round(steps)
+        # thinned at fixed instants, so that an old trail does not shimmer as it grows
+        every = max(3, math.ceil(len(poses) / _TRAIL_POINTS)) if steps > 400 else 3
+        rows = np.arange(back + (-back) % every, index + 1, every)
+        return poses[np.append(rows, index), :, :2]
 
     def _camera(self, index: int) -> str | mujoco.MjvCamera:
         options, tracks = self._options, self._footage.poses

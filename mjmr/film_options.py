@@ -22,6 +22,7 @@ class FilmOptions:
         fps: Pictures a second.
         speed: Simulated seconds shown a second; None: real time, faster only where the film would
             exceed a minute.
+        trail: How long the lines are that robots leave behind them [s]; inf: since the start.
     """
 
     camera: str = "overview"
@@ -31,6 +32,7 @@ class FilmOptions:
     height: int = 720
     fps: int = 30
     speed: float | None = None
+    trail: float = 1.2
 
     def __post_init__(self):
         if self.camera not in CAMERAS:
@@ -43,5 +45,7 @@ class FilmOptions:
             )
         if self.fps < 1:
             raise InvalidInputError(f"fps must be at least 1; got {self.fps}")
+        if not self.trail >= 0:
+            raise InvalidInputError(f"a trail lasts 0 s or more; got {self.trail}")
         if self.speed is not None and not self.speed > 0:
             raise InvalidInputError(f"speed must be positive; got {self.speed}")

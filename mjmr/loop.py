@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mjmr.errors import InvalidInputError, TruthError, UnknownNameError
+from mjmr.errors import InvalidInputError, TruthError
+from mjmr.notes import check_note
 from mjmr.randomness import Streams
 from mjmr.sensors.base import Actuated
 from mjmr.team import Team
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from mjmr.world import World
 
 Array = NDArray[np.float64]
-NOTES = ("goals", "waypoints", "stops")
 
 
 class Truth:
@@ -156,7 +156,8 @@ class TickedSimulation(ABC):
         Args:
             arrays: ``goals`` (rings), ``waypoints`` (the path to the goal leads through them) and
                 ``stops`` (where the planned command followed by braking ends), each of shape
-                (n, 2) over the team [m], world frame; NaN rows are not drawn.
+                (n, 2) over the team [m], world frame; ``links`` (n, n), lines from robot to robot
+                where above 0; ``points`` (k, 2), marks anywhere. NaN rows are not drawn.
 
         Raises:
             UnknownNameError: Another name.
@@ -166,14 +167,7 @@ class TickedSimulation(ABC):
             return
         fresh = dict(self.notes)
         for key, value in arrays.items():
-            if key not in NOTES:
-                raise UnknownNameError("note", key, NOTES)
-            array = np.array(value, dtype=np.float64)
-            if array.shape != (self.team.n, 2):
-                raise InvalidInputError(
-                    f"{key} must have shape ({self.team.n}, 2); got {array.shape}"
-                )
-            fresh[key] = array
+            fresh[key] = check_note(key, value, self.team.n)
         self.notes = fresh
 
     def add_radio(self, radio: "Radio") -> None:

@@ -14,6 +14,7 @@ Rgb = tuple[int, int, int]
 _CIRCLE = np.stack([np.cos(np.linspace(0, 2 * np.pi, 33)), np.sin(np.linspace(0, 2 * np.pi, 33))])
 _FONT = cv2.FONT_HERSHEY_DUPLEX
 _FAR = 1e6  # px
+_LINK: Rgb = (255, 240, 150)
 _SHIFT = 4  # cv2 takes sub-pixel coordinates as fixed point with this many bits
 
 
@@ -84,7 +85,9 @@ def draw_notes(
     notes: dict[str, Array],
     colours: list[Rgb],
 ) -> None:
-    """Draw goals (rings), paths (dashed through the waypoint) and stops (line and outline).
+    """Draw goals (rings), paths (dashed through the waypoint), stops (line and outline), links.
+
+    Links are lines between robots, points are small rings.
 
     Args:
         picture: RGB, drawn into.
@@ -95,7 +98,13 @@ def draw_notes(
         colours: One a robot.
     """
     goals, waypoints = notes.get("goals"), notes.get("waypoints")
-    stops = notes.get("stops")
+    stops, links, points = notes.get("stops"), notes.get("links"), notes.get("points")
+    if links is not None:
+        for i, j in np.argwhere(np.triu((links > 0) | (links > 0).T, 1)):
+            draw_line(picture, view.on_floor(poses[[i, j], :2], z=0.1), _LINK, 1)
+    if points is not None:
+        for point in points:
+            draw_ring(picture, view, point, 0.04, _LINK, 2)
     for i, colour in enumerate(colours):
         here = poses[i, :2]
         if goals is not None:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from mjmr.errors import MjmrError, one_line
 from mjmr.film_options import FilmOptions
 from mjmr.footage import Footage
-from mjmr.loop import NOTES
+from mjmr.notes import NOTES
 from mjmr.trace_file import header, pack, unpack
 
 if TYPE_CHECKING:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from mjmr.errors import InvalidInputError, MjmrError
 from mjmr.files import write_atomically
 from mjmr.footage import Footage
+from mjmr.notes import stack_notes
 from mjmr.recording import Recording
 
 if TYPE_CHECKING:
@@ -124,9 +125,8 @@ class Trace:
             "set_points": np.stack(self._set_points),
             "captions": np.array(footage.captions, dtype=np.str_),
         }
-        nowhere = np.full((n, 2), np.nan)
         for name in sorted({name for note in footage.notes for name in note}):
-            found[f"note_{name}"] = np.stack([note.get(name, nowhere) for note in footage.notes])
+            found[f"note_{name}"] = stack_notes(name, list(footage.notes), n)
         found |= self._contact_table(footage.model, k)
         for name, samples in self._samples.items():
             found[f"sensor_{name}_numbers"] = np.array([s[0] for s in samples], dtype=np.int64)

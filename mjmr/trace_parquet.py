@@ -48,7 +48,17 @@ def pack_parquet(head: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> b
     ):
         rows.add(kind, times, robots, fields, arrays[name])
     for name in [n for n in arrays if n.startswith("note_")]:
-        rows.add("note", times, robots, [f"{name[5:]}_{axis}" for axis in "xy"], arrays[name])
+        note = name.removeprefix("note_")
+        if note == "links":
+            rows.add("note", times, robots, [f"{note}_{robot}" for robot in robots], arrays[name])
+            continue
+        fields = [f"{note}_{axis}" for axis in "xy"]
+        if note == "points":  # no robot's
+            for i in range(arrays[name].shape[1]):
+                own = [f"{note}{i}_{axis}" for axis in "xy"]
+                rows.add("note", times, [""], own, arrays[name][:, i : i + 1])
+            continue
+        rows.add("note", times, robots, fields, arrays[name])
     positions = arrays["positions"]
     rows.add("position", times, [""], [f"qpos{i}" for i in range(positions.shape[1])],
              positions[:, None])  # fmt: skip

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from mjmr.cart import Cart
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.group import Group
+from mjmr.mark import Mark
 from mjmr.materials import check_material
 
 if TYPE_CHECKING:
@@ -115,6 +116,7 @@ class World:
         bounds: Inner faces of the wall (4,) [m].
         field: Marked playing field (4,) [m], or None.
         props: Boxes, balls and carts, in order of declaration.
+        marks: Painted on the floor.
         groups: Robots, in order of declaration.
         sensors: Cameras and other sensors that stand in the world, by name.
         simulation: The one that has the robots now.
@@ -163,6 +165,7 @@ class World:
         self.groups: list[Group] = []
         self.sensors: dict[str, Sensor] = {}
         self.simulation: Any = None
+        self.marks: list[Mark] = []
         self._edits: list[Callable[[Any], None]] = []
 
     @classmethod
@@ -180,6 +183,31 @@ class World:
         box = Box(x=x, y=y, length=length, width=width, **options)
         self.props.append(box)
         return box
+
+    def add_wall(
+        self, start: ArrayLike, end: ArrayLike, *, thickness: float = 0.1, **options: Any
+    ) -> Box:
+        """Stand a fixed box along the line between two points (2,) [m], as long as the line.
+
+        Args:
+            start: World frame.
+            end: World frame.
+            thickness: Across the line, half of it to each side [m].
+            options: ``height`` and ``material``; see :class:`Box`.
+
+        Raises:
+            InvalidInputError: Start and end are one point, or an option is out of range.
+        """
+        (x0, y0), (x1, y1) = np.asarray(start, float), np.asarray(end, float)
+        length = float(np.hypot(x1 - x0, y1 - y0))
+        yaw = float(np.arctan2(y1 - y0, x1 - x0))
+        return self.add_box((x0 + x1) / 2, (y0 + y1) / 2, length, thickness, yaw=yaw, **options)
+
+    def add_mark(self, x: float, y: float, **options: Any) -> Mark:
+        """Paint a disc or rectangle on the floor; see :class:`mjmr.mark.Mark` for the options."""
+        mark = Mark(x=x, y=y, **options)
+        self.marks.append(mark)
+        return mark
 
     def add_golf_ball(self, x: float, y: float) -> Ball:
         """Lay the small size league's ball (a golf ball, 42.7 mm, 46 g) on the floor."""

@@ -38,6 +38,7 @@ def build_spec(world: "World") -> mujoco.MjSpec:
     _stripes(spec, world)
     if world.field is not None:
         _field_lines(spec, world.field)
+    _marks(spec, world)
     for name, prop in world.named_props():
         if isinstance(prop, Cart):
             add_cart(spec, name, prop)
@@ -210,6 +211,23 @@ def _field_lines(spec: mujoco.MjSpec, field: np.ndarray) -> None:
         pos = [middle + radius * np.cos(a), (y0 + y1) / 2 + radius * np.sin(a), h]
         half = radius * np.tan(np.pi / sides) + w / 4
         _drawn(spec, pos, [w, half, h], a, "line")
+
+
+def _marks(spec: mujoco.MjSpec, world: "World") -> None:
+    for k, mark in enumerate(world.marks):
+        h = 0.0004 + 0.0001 * k  # later ones lie on top
+        disc = mark.radius is not None
+        size = [mark.radius, h, 0] if disc else [*mark.half_sides, h]
+        spec.worldbody.add_geom(
+            type=mujoco.mjtGeom.mjGEOM_CYLINDER if disc else _BOX,
+            pos=[mark.x, mark.y, h],
+            size=size,
+            quat=[np.cos(mark.yaw / 2), 0, 0, np.sin(mark.yaw / 2)],
+            rgba=mark.rgba,
+            contype=0,
+            conaffinity=0,
+            group=1,
+        )
 
 
 def _drawn(spec: mujoco.MjSpec, pos: list, size: list, yaw: float, material: str) -> None:

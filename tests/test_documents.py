@@ -145,3 +145,26 @@ def test_the_scripts_on_robots_print_what_they_say(tmp_path, script, said):
     done = run([sys.executable, script], tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.split() == [said]
+
+
+@pytest.mark.slow
+def test_the_page_on_schemas_runs_and_prints_its_diagram(tmp_path):
+    page = ROOT / "docs" / "schemas.md"
+    write_files(page, tmp_path)
+    done = run([sys.executable, "wallflowers.py"], tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == blocks(page, "mermaid")[0]
+    script = (tmp_path / "wallflowers.py").read_text()
+    composed = script[script.index("away,") : script.index("world =")].strip()
+    assert len(composed.splitlines()) <= 10, "the page promises ten lines"
+    assert (tmp_path / "wallflowers.mp4").stat().st_size > 50_000
+
+
+def test_every_schema_is_on_its_page():
+    import controllers.schemas as library
+
+    page = (ROOT / "docs" / "schemas.md").read_text()
+    for name in library.__all__:
+        kind = getattr(library, name)
+        if isinstance(kind, type) and issubclass(kind, library.Schema | library.Cue):
+            assert kind in (library.Schema, library.Cue) or f"`{name}(" in page, name

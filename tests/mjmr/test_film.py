@@ -188,3 +188,50 @@ def test_a_renderer_leaves_the_model_as_it_is():
         pass
     assert (quality.shadowsize, quality.numslices, quality.numquads, quality.offsamples) == before
     assert (model.vis.global_.offwidth, model.vis.global_.offheight) == size
+
+
+def test_trails_go_back_as_far_as_they_are_asked_to():
+    recording = record(seconds=3.0)
+    lengths = []
+    for trail in (0.0, 1.0, float("inf")):
+        film = Film("t", FilmOptions(width=640, height=480, trail=trail))
+        film.add(recording)
+        pictures = [panel_track(film, index) for index in (60, 180)]
+        lengths.append([float(np.ptp(track[:, 0, 0])) for track in pictures])
+    x = recording.poses[:, 0, 0]
+    assert lengths[0] == [0.0, 0.0]
+    assert lengths[1] == pytest.approx([x[60] - x[0], x[180] - x[120]], abs=0.03)
+    assert lengths[2] == pytest.approx([x[60] - x[0], x[180] - x[0]], abs=0.03)
+    with pytest.raises(InvalidInputError, match="a trail lasts 0 s or more"):
+        FilmOptions(trail=-1.0)
+
+
+def panel_track(film, index):
+    from mjmr.film import _Panel
+
+    footage, label, options = film._panels[0]
+    panel = _Panel(footage, label, 64, 64, options)
+    try:
+        return panel._track(index)
+    finally:
+        panel.close()
+
+
+def test_links_and_points_are_drawn_and_kept_in_traces():
+    recording = record(seconds=0.1)
+    plain = Film("t", FilmOptions(width=640, height=480))
+    plain.add(recording.footage())
+    before = plain.still(0.1)
+    recording.note(links=[[0, 1], [0, 0]], points=[[0.5, 0.5], [np.nan, np.nan]])
+    for _ in recording._simulation.ticks(0.1):
+        pass
+    film = Film("t", FilmOptions(width=640, height=480))
+    film.add(recording)
+    after = film.still(0.2)
+    colour = np.array([255, 240, 150])
+    shown = [(np.abs(p.astype(int) - colour).max(axis=2) < 40).sum() for p in (before, after)]
+    assert shown[1] > shown[0] + 60
+    with pytest.raises(InvalidInputError, match=r"links must have shape \(2, 2\)"):
+        recording.note(links=[[1, 0]])
+    with pytest.raises(InvalidInputError, match=r"points must have shape \(k, 2\)"):
+        recording.note(points=[1.0, 2.0])

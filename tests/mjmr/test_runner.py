@@ -313,7 +313,8 @@ def test_ctrl_c_before_the_first_trial(tmp_path):
         text=True,
         env={**os.environ, "TOY_PREPARE_SLEEP": "30"},
     )
-    wait_for(lambda: (folder / "results.sqlite").exists())
+    # not any earlier: libraries that are being imported may swallow an interrupt
+    assert driver.stderr.readline().startswith("preparing")
     time.sleep(0.3)
     driver.send_signal(signal.SIGINT)
     _, messages = driver.communicate(timeout=15)
