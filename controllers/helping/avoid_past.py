@@ -50,9 +50,12 @@ def past(low: NDArray[np.float64], high: NDArray[np.float64], cell: float) -> Pa
 
 
 @njit
-def forget_past(been):
-    """Start afresh: at a new goal."""
-    been.visits[:] = 0
+def fade(been):
+    """At a new goal: half of every count is forgotten, and a heading is to be chosen.
+
+    Where it has been then bounds what it avoids, for any number of goals.
+    """
+    been.visits[:] = been.visits[:] // 2
     been.cell[:] = -1
     been.place[:] = np.inf
 

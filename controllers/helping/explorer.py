@@ -52,7 +52,7 @@ class Settings(NamedTuple):
     reach: float = 1.0
     gain: float = 2.0
     cell: float = 0.4
-    bias: float = 0.2
+    bias: float = 4.0
     keep_promise: bool = False
 
 

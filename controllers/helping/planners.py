@@ -52,8 +52,8 @@ class AvoidPast:
         self._past = avoid_past.past(np.zeros(2), np.asarray(size, dtype=float), settings.cell)
 
     def begin(self) -> None:
-        """Forget where it has been."""
-        avoid_past.forget_past(self._past)
+        """Half of where it has been is forgotten."""
+        avoid_past.fade(self._past)
 
     def pause(self, position: Array) -> None:
         """Count the cell all the same; choose afresh afterwards."""
@@ -110,6 +110,10 @@ class VisBug:
         point = visbug.target(self._bug, x, y, self._settings.vision, walls.sight)
         way = np.array(point) - position
         return way / max(np.hypot(*way), self._settings.step)
+
+
+class Published:
+    """Stands for whichever of the paper's planners a condition names; loops have it compiled."""
 
 
 CLASSES = {"avoid-past": AvoidPast, "visbug": VisBug, "potential-field": PotentialField}

@@ -190,7 +190,7 @@ def begin(crew, x, y):
     """Give robot 0 its next goal, (x, y) [m] in the world, which is its frame."""
     new_goal(crew.known, crew.offered, 0, x, y)
     calm(crew.state, 0)
-    avoid_past.forget_past(crew.past)
+    avoid_past.fade(crew.past)
     visbug.forget_path(crew.bug)
 
 
@@ -205,7 +205,9 @@ def before(crew, walls, settings, options, rng):
     _sense(crew, walls, settings, options, rng)
     known, offered = crew.known, crew.offered
     if options.shares_goals and n > 1:
-        share_goals(known, crew.own, crew.heard, crew.distance, crew.bearing)
+        # talking is fast: within a step, word goes as far as robots see each other
+        for _ in range(n - 1):
+            share_goals(known, crew.own, crew.heard, crew.distance, crew.bearing)
         for i in range(1, n):
             if known.number[i, 0] == 0:
                 continue
@@ -216,10 +218,11 @@ def before(crew, walls, settings, options, rng):
                 ghost = known.path[i, 0, known.ghosts[i, 0] - 1]
                 sees_ghost = _looks(crew, i, ghost[0], ghost[1], walls, settings)
             check_goal(known, crew.own, i, 0, sees_goal, sees_ghost)
-        reflect(
-            known, offered, crew.own, crew.heard, crew.distance, crew.bearing,
-            settings.keep_promise,
-        )  # fmt: skip
+        for _ in range(n - 1):
+            reflect(
+                known, offered, crew.own, crew.heard, crew.distance, crew.bearing,
+                settings.keep_promise,
+            )  # fmt: skip
         known.last[:] = crew.own
     x, y, more = next_point(offered, 0)
     sees_next = more and _looks(crew, 0, x, y, walls, settings)

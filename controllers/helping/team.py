@@ -9,6 +9,7 @@
         mode, target = team.decide(sees_goal[0], sees_next)
         vector = team.steer(mode, target, ranges)     # in F_0, length at most 1 step
 
+Talking is fast: in each of ``share`` and ``reflect``, word goes as far as robots see each other.
 Every position is in the frame of the robot it belongs to: F_i, fixed where robot i keeps its
 odometry. No robot knows another's frame; mutual bearings carry points across.
 """
@@ -111,7 +112,8 @@ class HelpingTeam:
         self._own[:], self._heard[:] = np.asarray(own), np.asarray(heard)
         self._distance[:], self._bearing[:] = np.asarray(distance), np.asarray(bearing)
         if self.shares_goals:
-            share_goals(self.known, self._own, self._heard, self._distance, self._bearing)
+            for _ in range(self.n - 1):
+                share_goals(self.known, self._own, self._heard, self._distance, self._bearing)
 
     def points(self) -> Points:
         """What each robot is to look for now."""
@@ -134,10 +136,11 @@ class HelpingTeam:
             for i in range(1, self.n):
                 if self.known.number[i, 0] > 0:
                     check_goal(self.known, self._own, i, 0, bool(sees[i]), bool(ghost[i]))
-            reflect(
-                self.known, self.offered, self._own, self._heard, self._distance, self._bearing,
-                self.settings.keep_promise,
-            )  # fmt: skip
+            for _ in range(self.n - 1):
+                reflect(
+                    self.known, self.offered, self._own, self._heard, self._distance,
+                    self._bearing, self.settings.keep_promise,
+                )  # fmt: skip
         self.known.last[:] = self._own
 
     def decide(self, sees_goal: bool, sees_next: bool) -> tuple[int, Array]:
