@@ -28,13 +28,19 @@ study = Study(
         "robots in polygons, which is what the paper simulates."
     ),
     parameters=(
-        Parameter("mode", "point robots in polygons", "point", ("point",)),
+        Parameter(
+            "mode",
+            "point: point robots in polygons, as in the paper; physical: Pioneers in MuJoCo",
+            "point",
+            ("point", "physical"),
+        ),
         Parameter(
             "scene",
             "tour: targets in random rooms; trap: a dead end (figures 9 and 10); chain: standing "
-            "supporters that relay sight of the target",
+            "supporters that relay sight of the target; markers: what four cameras make of the "
+            "teammates' markers (mode physical)",
             "tour",
-            ("tour", "trap", "chain"),
+            ("tour", "trap", "chain", "markers"),
         ),
         Parameter("world", "office", "world1", ("world1", "world2", "trap")),
         Parameter(
@@ -61,12 +67,16 @@ study = Study(
             "none",
             ("none", "dead", "radio", "lost"),
         ),
-        Parameter("targets", "of a trial", 60, least=1),
+        Parameter(
+            "targets", "of a trial; in the scene markers looks round of each robot", 60, least=1
+        ),
     ),
     sizes=(QUICK, STANDARD, FULL),
     trial=f"{_HERE}.trial:trial",
     claims=f"{_HERE}.claims:claims",
+    film=f"{_HERE}.film:film",
     plots=f"{_HERE}.plots:plots",
+    world=f"{_HERE}.physical:world",
     bench=f"{_HERE}.bench:bench",
     prepare=f"{_HERE}.trial:prepare",
     verdicts=Path(__file__).with_name("verdicts.json"),

@@ -6,6 +6,7 @@ decide them. Steps are a mean over the targets a task reached; targets given up 
 
 from experiments.helping_navigation.claims_beyond import beyond
 from experiments.helping_navigation.claims_noise import noise
+from experiments.helping_navigation.claims_physical import physical
 from experiments.helping_navigation.claims_scenes import scenes
 from experiments.helping_navigation.claims_tables import tables
 from mjmr.claims import Claim
@@ -13,4 +14,4 @@ from mjmr.claims import Claim
 
 def claims() -> list[Claim]:
     """Every claim of the study."""
-    return [*tables(), *noise(), *scenes(), *beyond()]
+    return [*tables(), *noise(), *scenes(), *beyond(), *physical()]

@@ -27,14 +27,18 @@ class Guide:
         unreachable: How often Bug2 found the goal walled in, by what the map had then.
     """
 
-    def __init__(self, planner: str, settings: Settings, size: Array):
-        """Args: planner: As the study names it. settings: Numbers. size: Of the office (2,) [m]."""
-        self.planner, self._settings = planner, settings
-        self._by_rays = (
-            PotentialField(settings)
-            if planner == "potential-field"
-            else AvoidPast(settings, size=size)
-        )
+    def __init__(self, planner: str, settings: Settings, size: Array, own: Any = None):
+        """Args: planner: As the study names it. settings: Numbers. size: Of the office (2,) [m].
+
+        own: A planner's class in place of the one named.
+        """
+        self.planner, self._settings = planner if own is None else "", settings
+        if own is not None:
+            self._by_rays: Any = own(settings, None, size)
+        elif planner == "potential-field":
+            self._by_rays = PotentialField(settings)
+        else:
+            self._by_rays = AvoidPast(settings, size=size)
         self._bug = visbug.bug()
         vision = settings.vision
         self._walls = ScanMap(radius=_PLAN, reach=vision + 0.5)

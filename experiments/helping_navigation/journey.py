@@ -86,8 +86,11 @@ class Journey:
         follows: Length of each follow of a mate [motion steps].
     """
 
-    def __init__(self, setup: JourneySetup, seed: int):
-        """Args: setup: What R1 is to do. seed: Of the trial."""
+    def __init__(self, setup: JourneySetup, seed: int, planner: Any = None):
+        """Args: setup: What R1 is to do. seed: Of the trial. planner: A class of one's own, if any.
+
+        See :mod:`controllers.helping.planners` for what it has; it is given no walls.
+        """
         self.setup, self.crew = setup, Crew(setup.crew, seed)
         n = self.crew.n
         for fault in setup.faults:
@@ -96,7 +99,9 @@ class Journey:
         self.minds = [
             Mind(i, n, ghosts, setup.settings, setup.shares_state and i == 0) for i in range(n)
         ]
-        self.guide = Guide(setup.planner, setup.settings, np.asarray(setup.crew.office["size"]))
+        self.guide = Guide(
+            setup.planner, setup.settings, np.asarray(setup.crew.office["size"]), planner
+        )
         self._patrol = Patrol(setup.routes, phase=setup.phase) if len(setup.routes) else None
         self.decisions = 0
         self.follows: list[int] = []
@@ -227,7 +232,8 @@ class Journey:
         leg = self.legs[-1]
         leg.reached, leg.seconds = reached, now - self._since
         leg.metres = self._track.metres - self._from
-        leg.miss = float(np.hypot(*(self._track.place - self._goal)))
+        x, y = self._track.place - self._goal
+        leg.miss = math.hypot(x, y)
 
     @property
     def skipped(self) -> int:

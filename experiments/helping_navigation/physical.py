@@ -6,10 +6,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from controllers.helping.planners import Published
 from experiments.helping_navigation import markers, point
 from experiments.helping_navigation.journey import Journey, JourneySetup
+from experiments.helping_navigation.physical_world import add_team, office_world
 from experiments.helping_navigation.scenes import office, standing_chain, tour, trap
 from mjmr.errors import InvalidInputError
+from mjmr.parts import Parts
+from mjmr.world import World
 
 Array = NDArray[np.float64]
 Metrics = dict[str, float | int | str | bool]
@@ -17,7 +21,7 @@ STEP = 0.15  # m: a motion step of the point robots
 SIGHT = 8.0  # m
 
 
-def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
+def trial(condition: Mapping[str, Any], seed: int, parts: Parts | None = None) -> Metrics:
     """Run one physical condition with one seed.
 
     ``targets`` are looks round of each robot in the scene ``markers``.
@@ -25,6 +29,7 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
     Args:
         condition: See the study's parameters.
         seed: Of the trial.
+        parts: Whose planner leads, if it is not the published one; it is given no walls.
 
     Returns:
         Metrics; see :func:`measure` and, for markers, :func:`markers.compare`. Tours without
@@ -45,7 +50,8 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
         )
     setups = {"tour": tour, "trap": trap, "chain": standing_chain}
     setup = setups[condition["scene"]](condition, seed)
-    journey = Journey(setup, seed)
+    own = None if parts is None or parts["planner"] is Published else parts["planner"]
+    journey = Journey(setup, seed, own)
     journey.run()
     found = measure(journey)
     if condition["scene"] == "chain":
@@ -56,6 +62,15 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
         steps, _, _ = point.drive(condition, crew, goals[1:], point.CAP, seed)
         found["point_steps"], found["point_each"] = float(steps.mean()), _told(steps)
     return found
+
+
+def world(condition: Mapping[str, Any]) -> World:
+    """World of a physical condition with its robots at their starts, seed 0."""
+    setups = {"trap": trap, "chain": standing_chain}
+    setup = setups.get(condition["scene"], tour)(condition, 0)
+    place = office_world(setup.crew.office["size"], setup.crew.office["walls"])
+    add_team(place, setup.crew.starts)
+    return place
 
 
 def _along(setup: JourneySetup) -> float:

@@ -57,7 +57,7 @@ def tour(condition: Mapping[str, Any], seed: int) -> JourneySetup:
 
 
 def trap(condition: Mapping[str, Any], seed: int, seconds: float = TRAP_TIME) -> JourneySetup:
-    """R1 in a dead end with its goal behind the wall (figures 9 and 10), for ``seconds`` at most."""
+    """R1 in a dead end, its goal behind the wall (figures 9 and 10), for ``seconds`` at most."""
     place, helpers = office("trap"), condition["robots"] - 1
     goal = place.goal(0, Streams(seed).generator("targets"), place.free_space(ROOM))
     crew = point.patrolling(condition, np.array(point.TRAP_START), seed)
@@ -116,7 +116,7 @@ def _crew(
     condition: Mapping[str, Any], starts: list[tuple[float, ...]], seed: int,
     marks: Array | None = None,
 ) -> CrewSetup:  # fmt: skip
-    """Robots at ``starts``; R1 alone knows where it is, or it would not know where its goals are."""
+    """Robots at ``starts``; R1 alone knows where it is, as it must to know where its goals are."""
     place = office(condition["world"])
     frames = np.zeros((len(starts), 3))
     if condition["fault"] == "lost":

@@ -1,5 +1,6 @@
 """How much each size runs: the same experiments, with other numbers of tasks and targets."""
 
+from experiments.helping_navigation.physical_sizes import PHYSICAL
 from mjmr.conditions import Grid
 from mjmr.study import Size
 
@@ -57,6 +58,7 @@ def _chain(targets: int, seeds: int) -> tuple[Grid, ...]:
 QUICK = Size(
     "quick",
     (
+        *PHYSICAL["quick"],
         Grid(planner=_EXPLORING, targets=20),
         Grid(planner=_EXPLORING, robots=4, reading=READINGS, targets=20),
         *_trap(3),
@@ -68,14 +70,14 @@ QUICK = Size(
 )
 STANDARD = Size(
     "standard",
-    (*_tables(60), *_noise(60), *_lost(60), *_trap(10), *_chain(20, 3)),
+    (*PHYSICAL["standard"], *_tables(60), *_noise(60), *_lost(60), *_trap(10), *_chain(20, 3)),
     default_seeds=3,
     expected_minutes=5.0,
     note="3 tasks of 60 targets; the paper's tables are 5 of 200",
 )
 FULL = Size(
     "full",
-    (*_tables(200), *_noise(200), *_lost(200), *_trap(30), *_chain(20, 5)),
+    (*PHYSICAL["full"], *_tables(200), *_noise(200), *_lost(200), *_trap(30), *_chain(20, 5)),
     default_seeds=5,
     expected_minutes=18.0,
 )

@@ -16,6 +16,10 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts | None = None) -
         seed: The task.
         parts: What takes a role; None: the published planners.
     """
+    if condition["mode"] == "physical":
+        from experiments.helping_navigation import physical
+
+        return physical.trial(condition, seed, parts)
     from experiments.helping_navigation import point
 
     return point.trial(condition, seed, parts)
@@ -23,6 +27,7 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts | None = None) -
 
 def prepare() -> None:
     """Compile what the trials need."""
-    from experiments.helping_navigation import point
+    from experiments.helping_navigation import physical, point
 
     point.prepare()
+    physical.prepare()
