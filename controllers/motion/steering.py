@@ -16,6 +16,7 @@ from mjmr.jit import njit
 Array = NDArray[np.float64]
 _STEP = math.radians(5.0)  # between headings tried
 _WIDEST = math.radians(100.0)  # furthest off the direction wanted that is tried
+_WEDGED = 0.025  # m: what is this far within the radius kept from it may meet a turning hull
 _SKIN = 0.005  # m: what is nearer than the body's radius may come this much nearer
 
 
@@ -169,6 +170,17 @@ def steer(wish, distance, ranges, cos, sin, others, config):
                 break
         error = math.pi - (math.pi - chosen) % (2.0 * math.pi)
         command[i, 1] = min(max(gain * error, -max_turn), max_turn)
+        nearest, side = math.inf, 1.0
+        for k in range(count):
+            gap = math.hypot(points[k, 0], points[k, 1]) - radii[k]
+            if gap < nearest:
+                nearest, side = gap, points[k, 0]
+        if nearest < -_WEDGED and abs(error) > math.pi / 9:
+            # a corner would swing into what is that near: first straight away from it
+            back = -1.0 if side > 0.0 else 1.0
+            if free_way(back, 0.0, points, radii, count, 0.1) > 0.03:
+                command[i, 0], command[i, 1] = 0.3 * speed * back, 0.0
+                continue
         if abs(error) < math.pi / 3:
             ahead = free_way(1.0, 0.0, points, radii, count, look_ahead)
             stop = min(way if way < wanted else look_ahead, ahead)

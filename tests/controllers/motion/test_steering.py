@@ -42,9 +42,9 @@ def test_nan_stands_still():
 def test_slows_to_stop_short_of_a_wall():
     """No wall comes nearer than the radius: v^2 / 2a is at most what is left."""
     config = SteeringConfig()
-    for wall in (0.31, 0.4, 0.5, 0.8):
+    for wall in (0.33, 0.4, 0.5, 0.8):
         # a dead end: nowhere else to go
-        scan = room(-0.32, -0.32, wall, 0.32)
+        scan = room(-0.34, -0.34, wall, 0.34)
         forward = Steering().step([0.0], [5.0], scan, ANGLES, NOBODY)[0, 0]
         assert forward**2 / (2 * config.braking) <= wall - config.radius + 1e-9
 
@@ -59,6 +59,16 @@ def test_slides_along_a_wall_it_is_sent_into():
     scan = room(-4, -4, 0.36, 4)
     command = Steering().step([0.6], [5.0], scan, ANGLES, NOBODY)
     assert command[0, 1] > 0.0
+
+
+def test_goes_straight_before_a_corner_swings_into_a_jamb():
+    """A jamb beside the rear wheel, so near that the hull cannot turn there: forward first."""
+    scan = room(-4, -4, 4, 4)
+    jamb = np.abs(ANGLES - 2.2) < 0.05
+    scan[0, jamb] = 0.285
+    command = Steering().step([-2.0], [5.0], scan, ANGLES, NOBODY)
+    assert command[0, 0] > 0.0
+    assert command[0, 1] == 0.0
 
 
 def test_refuses_what_cannot_be():
