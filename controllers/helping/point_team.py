@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from controllers.helping import avoid_past, potential_field, visbug
 from controllers.helping.explorer import (
     AVOID_PAST,
+    GOAL,
     MATE,
     PLAN,
     POTENTIAL_FIELD,
@@ -78,6 +79,7 @@ class Team(NamedTuple):
         past: Avoid Past's memory of robot 0.
         bug: VisBug's path of robot 0.
         ranges: Free way along the rays of the planner in use, and of all (32,) [m].
+        mode: Of robot 0 at the last step (1,).
         counts: Since the start (4,): steps in each mode.
         follows: Length of each follow of a mate [steps] (64,).
     """
@@ -96,6 +98,7 @@ class Team(NamedTuple):
     past: avoid_past.Past
     bug: visbug.Bug
     ranges: NDArray[np.float64]
+    mode: NDArray[np.int64]
     counts: NDArray[np.int64]
     follows: NDArray[np.int64]
 
@@ -134,6 +137,7 @@ def team(
         past=avoid_past.past(np.zeros(2), size, settings.cell),
         bug=visbug.bug(),
         ranges=np.zeros(len(RAYS)),
+        mode=np.full(1, PLAN, dtype=np.int64),
         counts=np.zeros(4, dtype=np.int64),
         follows=np.zeros(64, dtype=np.int64),
     )
@@ -190,6 +194,7 @@ def begin(crew, x, y):
     """Give robot 0 its next goal, (x, y) [m] in the world, which is its frame."""
     new_goal(crew.known, crew.offered, 0, x, y)
     calm(crew.state, 0)
+    crew.mode[0] = PLAN
     avoid_past.fade(crew.past)
     visbug.forget_path(crew.bug)
 
@@ -226,13 +231,18 @@ def before(crew, walls, settings, options, rng):
         known.last[:] = crew.own
     x, y, more = next_point(offered, 0)
     sees_next = more and _looks(crew, 0, x, y, walls, settings)
-    sees_goal = _looks(crew, 0, known.goal[0, 0, 0], known.goal[0, 0, 1], walls, settings)
+    edges = walls.kept if crew.mode[0] == GOAL else walls.sight
+    sees_goal = sees(
+        crew.place[0, 0], crew.place[0, 1], known.goal[0, 0, 0], known.goal[0, 0, 1],
+        settings.sight, edges,
+    )  # fmt: skip
     mate = crew.state.mate[0]
     mode, x, y = decide(
         known, offered, crew.state, 0, crew.own, crew.heard, crew.distance, crew.bearing,
         sees_goal, sees_next, settings, options.shares_state,
     )  # fmt: skip
     crew.counts[mode] += 1
+    crew.mode[0] = mode
     if mode == MATE and crew.state.mate[0] >= 0:
         if mate < 0:
             crew.follows[min(crew.state.follows[0], 64) - 1] = 0

@@ -21,6 +21,8 @@ class Walls(NamedTuple):
 
     Args:
         sight: Edges that hide (m, 4) [m].
+        kept: Edges that hide a goal that was in sight a step ago (j, 4) [m]; walls are thinner for
+            these, so that a goal glimpsed past two corners is not lost in going round the first.
         motion: Edges that stop (k, 4) [m]; nearer to the robot than those that hide, so that it is
             never on the very edge of what it sees by.
         path: Edges that are followed along walls (k, 4) [m]; a little nearer still.
@@ -29,6 +31,7 @@ class Walls(NamedTuple):
     """
 
     sight: NDArray[np.float64]
+    kept: NDArray[np.float64]
     motion: NDArray[np.float64]
     path: NDArray[np.float64]
     after: NDArray[np.int64]

@@ -85,13 +85,10 @@ def _standing() -> list[Claim]:
         return Evidence(float(table.values("reached").sum() / run), n=int(run))
 
     def length(table: Table) -> Evidence:
-        return Evidence.of(
-            statistics.paired_ratio(table.values("steps"), table.values("along"))
-            if table.finished > 1
-            else statistics.Estimate(
-                *[float(table.values("steps")[0] / table.values("along")[0])] * 3, 1
-            )
-        )
+        values, along = table.values("steps"), table.values("along")
+        if len(values) == 1:
+            return Evidence(float(values[0] / along[0]), n=1)
+        return Evidence.of(statistics.paired_ratio(values, along))
 
     found = [
         Claim(

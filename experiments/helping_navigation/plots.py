@@ -53,6 +53,7 @@ def _bars(entries: dict[Any, tuple[float, float]], world: str, folder: Path) -> 
     title = f"{world}: steps a target, and deviation over tasks; alone, both readings are one"
     with figure(path, title, "robots", "steps") as axes:
         ticks, labels = [], []
+        top = max(value for value, _ in entries.values())
         for p, planner in enumerate(NAMES):
             for robots in (1, 2, 3, 4):
                 x = 5.0 * p + robots
@@ -63,7 +64,6 @@ def _bars(entries: dict[Any, tuple[float, float]], world: str, folder: Path) -> 
                         value, spread = entries[planner, robots, column]
                         axes.bar(x + 0.27 * (b - 1), value, 0.25, yerr=spread, color=colour,
                                  error_kw={"elinewidth": 0.8})  # fmt: skip
-            top = max(value for value, _ in entries.values())
             axes.text(5.0 * p + 2.5, 1.10 * top, NAMES[planner], ha="center")
         axes.set_xticks(ticks, labels)
         axes.grid(visible=False, axis="x")

@@ -55,7 +55,8 @@ def walls(name: str) -> Walls:
     place = office(name)
     path, links = place.edges(KEPT + 0.001)
     after, before = np.ascontiguousarray(links.T)
-    return Walls(place.edges(RADIUS)[0], place.edges(KEPT)[0], path, after, before)
+    sight, kept, motion = (place.edges(c)[0] for c in (RADIUS, RADIUS - 0.03, KEPT))
+    return Walls(sight, kept, motion, path, after, before)
 
 
 def targets(name: str, count: int, seed: int) -> Array:
