@@ -22,6 +22,7 @@ APART = 0.9  # m: robots start no nearer to each other
 # s after which a target is given up: the point robots' 6000 steps, in the trap 5000
 TOUR_TIME, TRAP_TIME, CHAIN_TIME = 1800.0, 1500.0, 1800.0
 _LANE = 0.40  # m: free on each side of the straight legs of a chain
+_DEAD_AT = (15.45, 6.0)  # m: where it is in nobody's way
 _ASIDE = 0.35  # m: the middle relay stands so far off the corridor's middle: dead, it blocks nobody
 
 
@@ -32,7 +33,11 @@ def office(name: str) -> Office:
 
 
 def tour(condition: Mapping[str, Any], seed: int) -> JourneySetup:
-    """The point robots' tour: the same targets, starts and patrols."""
+    """The point robots' tour: the same targets, starts and patrols.
+
+    With the fault ``dead`` the last supporter stands dead at the end of world 1's corridor: what
+    is missing is its help; in a door it would lock a room.
+    """
     goals = point.targets(condition["world"], condition["targets"], seed)
     helpers = condition["robots"] - 1
     route = office(condition["world"]).routes[0]
@@ -42,6 +47,8 @@ def tour(condition: Mapping[str, Any], seed: int) -> JourneySetup:
     for k in range(1, len(crew.place)):
         starts.append(_clear_start(crew.place[k], route[crew.following[k]], starts))
     dead = condition["fault"] == "dead" and helpers > 0
+    if dead:
+        starts[-1] = (*_DEAD_AT, 0.0)
     return JourneySetup(
         crew=_crew(condition, starts, seed),
         targets=goals[1:],
