@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from experiments.helping_navigation import physical_bench
 from experiments.helping_navigation.measures import NAMES
 from experiments.helping_navigation.trial import prepare
 from mjmr.bench import conditions, interleave, spread
@@ -44,4 +45,7 @@ def bench() -> str:
         conditions(),
         f"targets a CPU second, tasks of {_TARGETS}, one core, median [lowest, highest]:",
     ]
-    return "\n".join(lines + [f"  {name:40s} {spread(figure)}" for name, figure in rounds.items()])
+    lines += [f"  {name:40s} {spread(figure)}" for name, figure in rounds.items()]
+    lines.append("mode physical, world 1, real-time factors in CPU time, median [lowest, highest]:")
+    factors = interleave(physical_bench.cases(), rounds=5)
+    return "\n".join(lines + [f"  {name:40s} {spread(f)} x" for name, f in factors.items()])

@@ -1,5 +1,7 @@
 """Pioneers in an office: what they sense, say and do, against geometry."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,7 @@ from controllers.helping.explorer import Settings
 from controllers.helping.frames import to_mine
 from controllers.helping.goal_sharing import CHAIN
 from controllers.perception.markers import Marker, MarkerFinder
-from experiments.helping_navigation import words
+from experiments.helping_navigation import physical, study, words
 from experiments.helping_navigation.crew import Crew, CrewSetup
 from experiments.helping_navigation.journey import Journey
 from experiments.helping_navigation.mind import Look, Mind
@@ -30,11 +32,16 @@ POSES = np.array([[3.0, 6.0, 0.4], [8.0, 6.3, -2.0], [8.0, 2.0, 1.0], [6.6, 4.4,
 FRAMES = np.array([[0, 0, 0], [5, -3, 2.5], [1, 1, -0.7], [-4, 2, 1.2]], dtype=float)
 
 
-def crew(name: str = "world1", **options: object) -> Crew:
+def condition(**given: object) -> Any:
+    """A physical condition."""
+    return study.condition(mode="physical", **({"robots": 4, "reading": "literal"} | given))
+
+
+def crew(name: str = "world1") -> Crew:
     place = office(name)
     setup = CrewSetup(
         office={"size": place.size, "walls": place.walls}, starts=POSES, frames=FRAMES,
-        localizer_noise=(0.0, 0.0), **options,
+        localizer_noise=(0.0, 0.0),
     )  # fmt: skip
     return Crew(setup, 1000)
 
@@ -89,7 +96,7 @@ def test_errors_of_sight_are_the_papers():
     place = office("world1")
     world = office_world(place.size, place.walls)
     world.add_group(Pioneer2DX, POSES[:2])
-    eyes = world.mount(TeammateSight(radius=8.0, err_max=0.3, rate=10.0))
+    eyes = world.mount(TeammateSight(radius=8.0, noisy=True, err_max=0.3, rate=10.0))
     simulation = Simulation(world, seed=1000, control_period=0.1)
     looks = np.array([eyes.read()[0, 1] for _ in simulation.ticks(30.0)])
     away = transform_points(invert(POSES[0]), POSES[1, :2])
@@ -198,51 +205,57 @@ def test_markers_are_found_where_they_are():
 
 
 def test_r1_follows_a_standing_chain_without_its_planner():
-    journey = Journey(standing_chain(office("world1"), planner="avoid-past", seed=1000), 1000)
+    setup = standing_chain(condition(scene="chain", targets=1), 1000)
+    journey = Journey(setup, 1000)
     (leg,) = journey.run()
     assert leg.reached
     assert leg.miss < 0.35
-    # 0.3 s for each of the hops that the news takes at the start, and a little on the way
-    assert leg.calls <= 12
-    assert leg.metres < 17.5  # straight legs, not a search
+    assert leg.calls <= 0.1 * journey.decisions
+    corners = np.vstack([setup.crew.starts[:, :2], setup.targets])
+    straight = np.hypot(*np.diff(corners, axis=0).T).sum()
+    assert 0.8 * straight < leg.metres < 1.1 * straight  # legs, not a search
     assert journey.crew.meter.robots == 0.0
 
 
 def test_lost_supporters_change_nothing():
-    ways = [
-        Journey(standing_chain(office("world1"), planner="avoid-past", seed=1001, lost=lost), 1001)
-        .run()[0].metres
-        for lost in (False, True)
-    ]  # fmt: skip
+    ways = []
+    for fault in ("none", "lost"):
+        setup = standing_chain(condition(scene="chain", targets=1, fault=fault), 1001)
+        ways.append(Journey(setup, 1001).run()[0].metres)
     assert ways[0] == pytest.approx(ways[1], rel=0.01)
 
 
 def test_same_seed_same_bits():
     def run() -> np.ndarray:
         np.random.rand()  # noqa: NPY002  whatever others draw changes nothing
-        place = office("world1")
-        setup = tour(
-            place, [[2.5, 9.0]], planner="potential-field", robots=4, chain=True, seed=1002,
-            err_max=0.2, radio_loss=0.1,
+        given = condition(
+            planner="potential-field", shares_state=True, reading="chain", targets=1, noise=True,
+            err_max=0.2, fault="radio",
         )  # fmt: skip
-        journey = Journey(setup, 1002)
+        journey = Journey(tour(given, 1002), 1002)
         journey.run(9.0)
-        return journey.crew.simulation.full_positions()
+        positions = journey.crew.simulation.full_positions()
+        assert positions is not None
+        return positions
 
     np.testing.assert_array_equal(run(), run())
 
 
 @pytest.mark.slow
 def test_a_mate_leads_out_of_the_trap():
-    stuck = Journey(
-        trap(office("trap"), shares_state=False, robots=2, seed=1000, leg_time=180), 1000
-    )
+    given = {"scene": "trap", "world": "trap", "planner": "potential-field", "robots": 2}
+    stuck = Journey(trap(condition(**given), 1000, 180.0), 1000)
     assert not stuck.run()[0].reached
-    freed = Journey(
-        trap(office("trap"), shares_state=True, robots=2, seed=1000, leg_time=300), 1000
-    )
+    freed = Journey(trap(condition(**given, shares_state=True), 1000, 400.0), 1000)
     assert freed.run()[0].reached
     assert 1 <= freed.minds[0].state.follows[0] <= 10
+
+
+def test_a_planner_that_knows_the_map_is_refused():
+    with pytest.raises(InvalidInputError, match="no robot does"):
+        physical.trial(condition(planner="shortest-path", robots=1, reading="none"), 1000)
+    with pytest.raises(InvalidInputError, match="does not go with reading=none"):
+        physical.trial(condition(reading="none"), 1000)
 
 
 def test_refuses_what_cannot_be():
