@@ -213,7 +213,7 @@ class Journey:
 
     def _arrived(self) -> bool:
         far = self.crew.own(0, self._goal) - self.crew.pose[0, :2]
-        return bool(np.hypot(*far) < self.setup.settings.epsilon)
+        return float(np.linalg.norm(far)) < self.setup.settings.epsilon
 
     def _next_target(self, now: float, reached: bool = False) -> bool:
         if self.legs:
