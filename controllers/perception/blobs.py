@@ -98,6 +98,14 @@ class BlobFinder:
         table = np.array(rows, dtype=np.float64).reshape(-1, 3)
         return Blobs(table[:, :2] + 0.5, table[:, 2])
 
+    def mask(self, colour: int) -> NDArray[np.uint8]:
+        """Pixels of one colour in the image looked at, (height, width), 0 or 255, without specks.
+
+        Args:
+            colour: Index into the colours.
+        """
+        return cv2.morphologyEx(self._mask(colour), cv2.MORPH_OPEN, _SQUARE)  # pyright: ignore
+
     def _mask(self, colour: int) -> NDArray[np.uint8]:
         low, high = int(self._low[colour]), int(self._high[colour])
         least = (int(self._least[colour]), self._dark)
