@@ -43,6 +43,10 @@ class TruthError(MjmrError):
     """Truth was read while a controller is to act."""
 
 
+class LiftError(MjmrError):
+    """A controller tried to move a robot by hand."""
+
+
 class SimulationDivergedError(MjmrError):
     """The physics left the finite or plausible range; the message says where and when.
 

@@ -207,7 +207,9 @@ class _Panel:
         renderer = self._renderer
         image = renderer.picture(data, self._camera(index))
         view = renderer.view()
-        draw_trails(image, view, self._track(index), self._colours)
+        rows = self._trail_rows(index)
+        lifts = None if footage.lifts is None else footage.lifts[rows]
+        draw_trails(image, view, footage.poses[rows, :, :2], self._colours, lifts)
         draw_notes(image, view, poses, footage.radii, footage.note(index), self._colours)
         heads = view.on_floor(poses[:, :2], z=0.16)
         for i, colour in enumerate(self._colours):
@@ -216,15 +218,15 @@ class _Panel:
         draw_text(image, footage.caption(index), (14, renderer.height - 14), 0.55)
         return image
 
-    def _track(self, index: int) -> NDArray[np.float64]:
-        """Where the robots have been (k, n, 2), as far back as trails last."""
+    def _trail_rows(self, index: int) -> NDArray[np.int64]:
+        """Instants that trails go through, as far back as they last, oldest first."""
         poses, trail = self._footage.poses, self._options.trail
         steps = trail / self._footage.period
         back = 0 if steps >= index else index - round(steps)
         # thinned at fixed instants, so that an old trail does not shimmer as it grows
         every = max(3, math.ceil(len(poses) / _TRAIL_POINTS)) if steps > 400 else 3
         rows = np.arange(back + (-back) % every, index + 1, every)
-        return poses[np.append(rows, index), :, :2]
+        return np.append(rows, index)
 
     def _camera(self, index: int) -> str | mujoco.MjvCamera:
         options, tracks = self._options, self._footage.poses

@@ -1,6 +1,6 @@
 """Footage: what a film shows, whether it was recorded just now or read from a file."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -27,6 +27,8 @@ class Footage:
         notes: What the controller wanted shown at each; see
             :meth:`mjmr.loop.TickedSimulation.note`. Empty: nothing.
         captions: A line of text for each; empty: none.
+        lifts: How often each robot had been lifted by each instant (k, n); None: never. A trail
+            ends where a robot was picked up.
     """
 
     model: Any
@@ -38,6 +40,7 @@ class Footage:
     poses: Array
     notes: Sequence[dict[str, Array]] = field(default_factory=tuple)
     captions: Sequence[str] = field(default_factory=tuple)
+    lifts: NDArray[np.int64] | None = None
 
     def __post_init__(self):
         k, n = len(self.times), len(self.radii)
@@ -60,3 +63,23 @@ class Footage:
     def caption(self, index: int) -> str:
         """Line of text of instant ``index``."""
         return self.captions[index] if self.captions else ""
+
+
+def lift_counts(
+    times: Array, poses: Array, lifts: Iterable[tuple[float, int, Array]]
+) -> NDArray[np.int64]:
+    """How often each robot had been lifted by each instant (k, n).
+
+    Args:
+        times: Instants (k,) [s].
+        poses: Of the robots at each (k, n, 3).
+        lifts: When [s], which robot of the team, and where to (3,). One at an instant itself counts
+            from there or from the next one on, as the poses show.
+    """
+    counts = np.zeros(poses.shape[:2], dtype=np.int64)
+    for time, robot, pose in lifts:
+        first = int(np.searchsorted(times, time - 1e-9))
+        if first < len(times) and np.abs(poses[first, robot, :2] - pose[:2]).max() > 1e-6:
+            first += 1
+        counts[first:, robot] += 1
+    return counts

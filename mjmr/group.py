@@ -92,6 +92,21 @@ class Group:
         self._pending = deque([self._command] * self.command_latency)
         self._acknowledged = self._everyone
 
+    def halt(self, rows: NDArray[np.int64]) -> None:
+        """Forget what robots ``rows`` (k,) were commanded, as one does that is switched off and on.
+
+        :meth:`mjmr.loop.TickedSimulation.lift` calls this.
+        """
+        idle = self.platform.idle or 0.0
+
+        def without(command: Array) -> Array:
+            fresh = command.copy()
+            fresh[rows] = idle
+            return fresh
+
+        self._command, self._executed = without(self._command), without(self._executed)
+        self._pending = deque(without(command) for command in self._pending)
+
     def start_at(self, poses: ArrayLike) -> None:
         """Start elsewhere in the next simulation; :meth:`mjmr.world.World.start_at` calls this.
 

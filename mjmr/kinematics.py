@@ -68,7 +68,7 @@ class KinematicSimulation(TickedSimulation):
         rows = []
         for _, prop in self.world.movers:
             yaw = getattr(prop, "yaw", 0.0)
-            z = getattr(prop, "radius", 0.0) or getattr(prop, "height", 0.0) / 2
+            z = getattr(prop, "height", 0.0) / 2 or getattr(prop, "radius", 0.0)
             rows.append([prop.x, prop.y, z, np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2)])
         return np.array(rows, dtype=np.float64).reshape(-1, 7)
 
@@ -81,10 +81,20 @@ class KinematicSimulation(TickedSimulation):
         """Time, which places the carts, poses of the whole team (n, 3), and parts that move."""
         return self.time, self._pose.copy(), *self.moved_parts()
 
+    def _lift(self, group: "Group", rows: Any, poses: Array) -> None:
+        where = np.arange(self.team.n)[self._rows[id(group)]][rows]
+        self._pose, self._twist, self._pace = (
+            _replaced(array, where, value)
+            for array, value in ((self._pose, poses), (self._twist, 0.0), (self._pace, 0.0))
+        )
+
     def _begin_period(self) -> None:
         team, time, period = self.team, self.time, self.control_period
-        ramps = [g.next_ramp(time, period) for g in team.groups]
         platforms = [g.platform for g in team.groups]
+        ramps = [
+            tuple(p.mistuned(command) for command in g.next_ramp(time, period))
+            for p, g in zip(platforms, team.groups, strict=True)
+        ]
         pairs = list(zip(platforms, ramps, strict=True))
         self._twist = team.stack([p.twist_of(start) for p, (start, _) in pairs])
         self._target = team.stack([p.twist_of(target) for p, (_, target) in pairs])
@@ -112,3 +122,10 @@ class KinematicSimulation(TickedSimulation):
 
     def _set_physics_state(self, state: Array) -> None:
         self._pose, self._twist, self._pace, self._way = (part.copy() for part in state)
+
+
+def _replaced(array: Array, rows: Any, values: Any) -> Array:
+    """A copy with other rows: what was an array before may be shared with groups."""
+    fresh = array.copy()
+    fresh[rows] = values
+    return fresh

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from mjmr.errors import InvalidInputError, TruthError
+from mjmr.errors import InvalidInputError, LiftError, TruthError
+from mjmr.lift import check_lift
 from mjmr.notes import check_note
 from mjmr.randomness import Streams
 from mjmr.sensors.base import Actuated
@@ -17,6 +18,7 @@ from mjmr.team import Team
 from mjmr.watch import announce
 
 if TYPE_CHECKING:
+    from mjmr.byte_radio import ByteRadio
     from mjmr.group import Group
     from mjmr.radio import Radio
     from mjmr.sensors.base import Sensor
@@ -72,13 +74,13 @@ class Snapshot:
     Attributes:
         time: Simulated seconds.
         step: Physics steps since the start.
-        physics: State vector of the physics.
+        physics: State of the physics.
         parts: States of groups and sensors.
     """
 
     time: float
     step: int
-    physics: Array
+    physics: Any
     parts: tuple[Any, ...]
 
 
@@ -103,6 +105,8 @@ class TickedSimulation(ABC):
         radios: By name, in the order they were set up.
         message_followers: Called by radios with every message: when sent [s], when delivered (k,)
             [s] or NaN, sender, receivers (k,), bytes. For traces.
+        lift_followers: Called with every :meth:`lift`: robots' indices in the team (k,), poses
+            (k, 3).
     """
 
     def __init__(
@@ -129,8 +133,9 @@ class TickedSimulation(ABC):
         self.caption: Callable[[], str] = str
         self.diverged = False
         self.actuated: list[Actuated] = []
-        self.radios: dict[str, Radio] = {}
+        self.radios: dict[str, Radio | ByteRadio] = {}
         self.message_followers: list[Callable[[float, Array, int, Any, int], None]] = []
+        self.lift_followers: list[Callable[[Any, Array], None]] = []
         self._observers: list[Callable[[], None]] = []
         self._started = False
         self._studio: Studio | None = None
@@ -170,7 +175,7 @@ class TickedSimulation(ABC):
             fresh[key] = check_note(key, value, self.team.n)
         self.notes = fresh
 
-    def add_radio(self, radio: "Radio") -> None:
+    def add_radio(self, radio: "Radio | ByteRadio") -> None:
         """Make a radio part of snapshots; it calls this itself.
 
         Raises:
@@ -224,6 +229,38 @@ class TickedSimulation(ABC):
     def observe(self, observer: Callable[[], None]) -> None:
         """Call ``observer`` at the start and after every control period; it may read truth."""
         self._observers.append(observer)
+
+    def lift(self, group: "Group", rows: ArrayLike, poses: ArrayLike) -> None:
+        """Pick robots up and put them down elsewhere, at rest, as an operator does by hand.
+
+        For observers, and between two calls of :meth:`ticks`: a controller cannot do it. What the
+        robots were commanded is forgotten; their sensors and radios go on, wheels keep the angles
+        they had. Traces have every lift.
+
+        Args:
+            group: Whose robots.
+            rows: Their indices in the group (k,).
+            poses: Where to (k, 3) [m, m, rad], world frame, within the walls.
+
+        Raises:
+            LiftError: It is called while a controller is to act.
+            InvalidInputError: No such robots, poses that cannot be, or a place that is not free
+                (says what is there); then nothing was moved.
+        """
+        if self.acting:
+            raise LiftError(
+                "robots cannot be lifted while a controller is to act; lift them in an observer, "
+                "or between two runs of ticks"
+            )
+        which, where = check_lift(group, rows, poses)
+        if not len(which):
+            return
+        self.world.check_inside(group, which, where)
+        self._lift(group, which, where)
+        group.halt(which)
+        first = self.team.rows(group).start
+        for follow in self.lift_followers:
+            follow(first + which, where)
 
     def ticks(self, duration: float) -> Iterator[float]:
         """Run for ``duration`` [s]; yields the time [s] at every control instant.
@@ -345,6 +382,10 @@ class TickedSimulation(ABC):
     @abstractmethod
     def visible_state(self) -> Any:
         """What a picture of this instant is made from; copies. See :class:`Studio`."""
+
+    @abstractmethod
+    def _lift(self, group: "Group", rows: Any, poses: Array) -> None:
+        """Put robots ``rows`` (k,) down at rest at ``poses`` (k, 3), or move nothing and raise."""
 
     @abstractmethod
     def _begin_period(self) -> None: ...

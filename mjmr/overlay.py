@@ -120,8 +120,19 @@ def draw_notes(
             draw_ring(picture, view, stops[i], radii[i], colour, 1)
 
 
-def draw_trails(picture: Picture, view: Pinhole, track: Array, colours: list[Rgb]) -> None:
-    """Draw where robots have been: track (k, n, 2) [m], oldest first."""
+def draw_trails(
+    picture: Picture,
+    view: Pinhole,
+    track: Array,
+    colours: list[Rgb],
+    lifts: NDArray[np.int64] | None = None,
+) -> None:
+    """Draw where robots have been: track (k, n, 2) [m], oldest first.
+
+    ``lifts`` (k, n) counts how often each had been picked up: its trail is cut there.
+    """
     for i, colour in enumerate(colours):
         faint: Rgb = tuple(c // 2 for c in colour)  # pyright: ignore[reportAssignmentType]
-        draw_line(picture, view.on_floor(track[:, i]), faint, 1)
+        cuts = [] if lifts is None else np.flatnonzero(np.diff(lifts[:, i])) + 1
+        for piece in np.split(view.on_floor(track[:, i]), cuts):
+            draw_line(picture, piece, faint, 1)

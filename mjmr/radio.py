@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.randomness import SampleNoise
+from mjmr.reach import Reach
 
 if TYPE_CHECKING:
     from mjmr.loop import TickedSimulation
@@ -112,8 +113,6 @@ class Radio:
             InvalidInputError: A negative range or latency, a loss outside [0, 1], an inbox
                 without room, or a radio of that name in this simulation already.
         """
-        if not range >= 0:
-            raise InvalidInputError(f"a radio's range is 0 or more; got {range} m")
         if not 0 <= latency < math.inf:
             raise InvalidInputError(f"a radio's latency is 0 or more and finite; got {latency} s")
         if not 0 <= loss <= 1:
@@ -122,9 +121,10 @@ class Radio:
             raise InvalidInputError(f"an inbox has room for 1 message or more; got {inbox}")
         self._simulation, self._team = simulation, simulation.team
         n = self._team.n
+        self._reach = Reach(simulation, range, visible)
         self.range, self.latency, self.loss = float(range), float(latency), float(loss)
         self.name = name
-        self._visible, self._inbox = visible, int(inbox)
+        self._inbox = int(inbox)
         self._index = {name: i for i, name in enumerate(self._team.names)}
         self._latency_steps = max(1, simulation.steps_until(latency))
         sequences = simulation.streams.sequence(f"radio/{name}").spawn(n)
@@ -134,7 +134,6 @@ class Radio:
         self._inboxes: list[deque[Message]] = [deque() for _ in self._team.names]
         self._counts = np.zeros((5, n), dtype=np.int64)
         self._latest: tuple[Array, Array] | None = None
-        self._reach_step, self._reach = -1, np.zeros((n, n), dtype=bool)
         simulation.add_radio(self)
 
     def send(self, sender: Agent, payload: Payload, to: Agent | Iterable[Agent]) -> None:
@@ -201,7 +200,7 @@ class Radio:
                 f"got {columns}"
             )
         step, time = self._now()
-        silent = self._faulty("silent", time)
+        silent = self._reach.faulty("silent", time)
         numbers = self._numbers.copy()
         self._numbers[who] += 1
         if silent is not None:
@@ -209,7 +208,7 @@ class Radio:
         size = columns * given.dtype.itemsize
         self._counts[0, who] += 1
         self._counts[1, who] += size
-        reached = self._in_reach(step) & who[:, None]
+        reached = self._reach.now() & who[:, None]
         np.fill_diagonal(reached, False)
         heard = reached.copy()
         if self.loss > 0:
@@ -217,7 +216,7 @@ class Radio:
                 heard[i] &= self._losses[i].sample(int(numbers[i])) >= self.loss
         ready = step + self._latency_steps
         delivered = ready * self._simulation.timestep
-        deaf = self._faulty("deaf", delivered)
+        deaf = self._reach.faulty("deaf", delivered)
         if deaf is not None:
             heard &= ~deaf
         for i in np.flatnonzero(who) if self._simulation.message_followers else ():
@@ -279,7 +278,7 @@ class Radio:
         self._inboxes = [deque(box) for box in boxes]
         self._numbers, self._counts = numbers.copy(), counts.copy()
         self._latest = None if latest is None else tuple(a.copy() for a in latest)
-        self._reach_step = -1
+        self._reach.forget()
 
     def _send(self, origin: int, payload: Payload, addressed: Flags, *, broadcast: bool) -> None:
         if isinstance(payload, (bytearray, memoryview)):
@@ -294,19 +293,19 @@ class Radio:
         step, time = self._now()
         number = int(self._numbers[origin])
         self._numbers[origin] += 1
-        silent = self._faulty("silent", time)
+        silent = self._reach.faulty("silent", time)
         if silent is not None and silent[origin]:
             return
         size = _size(payload)
         self._counts[0, origin] += 1
         self._counts[1, origin] += size
-        reached = addressed & self._in_reach(step)[origin]
+        reached = addressed & self._reach.now()[origin]
         heard = reached.copy()
         if self.loss > 0:
             heard &= self._losses[origin].sample(number) >= self.loss
         ready = step + self._latency_steps
         delivered = ready * self._simulation.timestep
-        deaf = self._faulty("deaf", delivered)
+        deaf = self._reach.faulty("deaf", delivered)
         if deaf is not None:
             heard &= ~deaf
         if self._simulation.message_followers:
@@ -337,33 +336,6 @@ class Radio:
                 values, sent = self._latest
                 np.copyto(values, flight.values[None], where=flight.heard[:, :, None])
                 sent[flight.heard] = flight.sent
-
-    def _in_reach(self, step: int) -> Flags:
-        """Who can hear whom now (n, n), sender first."""
-        if self._reach_step != step:
-            simulation, team = self._simulation, self._team
-            reach = np.ones((team.n, team.n), dtype=bool)
-            if self.range < math.inf:
-                at = team.stack([simulation.base_poses_of(g)[:, :3] for g in team.groups])
-                apart = at[:, None] - at[None]
-                reach = (apart**2).sum(axis=2) <= self.range**2
-            if self._visible is not None:
-                free = np.asarray(self._visible())
-                if free.shape != reach.shape or free.dtype != bool:
-                    raise InvalidInputError(
-                        f"visible must return flags of shape {reach.shape}; got {free.dtype} of "
-                        f"shape {free.shape}"
-                    )
-                reach &= free
-            self._reach, self._reach_step = reach, step
-        return self._reach
-
-    def _faulty(self, kind: str, time: float) -> Flags | None:
-        masks = [getattr(g.faults, kind)(time) for g in self._team.groups]
-        if all(mask is None for mask in masks):
-            return None
-        pairs = zip(self._team.groups, masks, strict=True)
-        return np.concatenate([np.zeros(g.n, dtype=bool) if m is None else m for g, m in pairs])
 
     def _tell(
         self, sender: int, time: float, delivered: float, size: int, shown: Flags, heard: Flags

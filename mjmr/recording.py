@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError, MjmrError
-from mjmr.footage import Footage
+from mjmr.footage import Footage, lift_counts
 from mjmr.watch import watching
 
 if TYPE_CHECKING:
@@ -45,11 +45,22 @@ class Recording:
         self._notes: list[dict[str, Array]] = []
         self._captions: list[str] = []
         self._caption = caption
+        self._lifts: list[tuple[float, int, Array]] = []
+        simulation.lift_followers.append(self._follow)
         simulation.observe(self._capture)
 
     def note(self, **arrays: ArrayLike) -> None:
         """Say what to draw from now on; see :meth:`mjmr.loop.TickedSimulation.note`."""
         self._simulation.note(**arrays)
+
+    def _follow(self, robots: NDArray[np.int64], poses: Array) -> None:
+        time = self._simulation.time
+        self._lifts.extend((time, int(i), p) for i, p in zip(robots, poses, strict=True))
+
+    @property
+    def lifts(self) -> list[tuple[float, int, Array]]:
+        """Robots that were lifted: when [s], index in the team, where to (3,)."""
+        return list(self._lifts)
 
     def _capture(self) -> None:
         simulation = self._simulation
@@ -108,6 +119,7 @@ class Recording:
             poses=self.poses,
             notes=list(self._notes),
             captions=list(self._captions),
+            lifts=lift_counts(self.times, self.poses, self._lifts),
         )
 
     def _placed(self, model: Any) -> Array:
@@ -115,18 +127,18 @@ class Recording:
         import mujoco
 
         from mjmr.cart_servos import CartServos
+        from mjmr.prop_places import PropPlaces
 
         data = mujoco.MjData(model)
         team = self.team
         drives = [(team.rows(g), g.platform.bind(model, g.prefixes)) for g in team.groups]
-        first = [model.joint(name).qposadr[0] for name, _ in self.world.movers]
+        props = PropPlaces(model, self.world)
         carts = CartServos(model, self.world)
-        props = np.array(first, dtype=np.int64).reshape(-1, 1) + np.arange(7)
         positions = np.empty((len(self), model.nq))
         for k, (poses, movers) in enumerate(zip(self._poses, self._movers, strict=True)):
             for rows, drive in drives:
                 drive.place(data, poses[rows])
-            data.qpos[props] = movers
+            props.place(data, movers)
             carts.place(data, self._times[k])
             for sensor, moved in zip(self._simulation.actuated, self._parts[k], strict=True):
                 sensor.place(data, moved)

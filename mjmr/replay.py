@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mjmr.errors import MjmrError, one_line
 from mjmr.film_options import FilmOptions
-from mjmr.footage import Footage
+from mjmr.footage import Footage, lift_counts
 from mjmr.notes import NOTES
 from mjmr.trace_file import header, pack, unpack
 
@@ -110,6 +110,7 @@ def load(path: Path) -> Replay:
             poses=arrays["poses"][:end],
             notes=_notes(arrays, end),
             captions=_failure_captions(head, end) if failure else arrays["captions"][:end].tolist(),
+            lifts=_lifts(arrays, end),
         )
         error = head.get("error") or ""
         title = f"{head['study']} seed {head['seed']}"
@@ -118,6 +119,14 @@ def load(path: Path) -> Replay:
     except (ValueError, TypeError, IndexError) as e:
         raise MjmrError(f"{path} is damaged: {one_line(e)}") from e
     return Replay(footage, title, FAILURE_SPEED if failure else None, error)
+
+
+def _lifts(arrays: dict[str, np.ndarray], end: int) -> NDArray[np.int64] | None:
+    """How often robots had been lifted (k, n); of files that do not say it None."""
+    if "lift_times" not in arrays:
+        return None
+    rows = zip(*(arrays[f"lift_{name}"] for name in ("times", "robots", "poses")), strict=True)
+    return lift_counts(arrays["times"][:end], arrays["poses"][:end], rows)
 
 
 def _notes(arrays: dict[str, np.ndarray], end: int) -> list[dict[str, np.ndarray]]:

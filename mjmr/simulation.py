@@ -1,8 +1,10 @@
 """Simulation: a World in MuJoCo, advanced between the ticks of a control loop."""
 
+import copy
 import math
 from collections import deque
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import mujoco
@@ -13,9 +15,11 @@ from mjmr.cart_servos import CartServos
 from mjmr.errors import InvalidInputError, SimulationDivergedError
 from mjmr.guard import plausible
 from mjmr.last_second import LastSecond
+from mjmr.lift import Lifter
 from mjmr.loop import Snapshot, TickedSimulation
+from mjmr.prop_places import PropPlaces
 from mjmr.robots.platform import CheckedDrive, FramedDrive, TiltedDrive
-from mjmr.start_check import check_start
+from mjmr.start_check import check_start, overlaps
 
 if TYPE_CHECKING:
     from mjmr.group import Group
@@ -95,8 +99,9 @@ class Simulation(TickedSimulation):
                 )
         self._checks = [d.check for _, d in self._each if isinstance(d, CheckedDrive)]
         self._step_watchers: list[Callable[[], None]] = []
-        bodies = [self.model.body(name).id for name, _ in world.movers]
-        self._mover_ids = np.array(bodies, dtype=np.int64)
+        self._lifters: dict[int, Lifter] = {}
+        self._sleeps = bool(self.model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP)
+        self._movers = PropPlaces(self.model, world)
         for group, drive in self._each:
             drive.place(data, group.start)
         self._carts = CartServos(self.model, world) if world.carts else None
@@ -144,8 +149,7 @@ class Simulation(TickedSimulation):
 
     def mover_poses(self) -> Array:
         """Poses (k, 7) of the free props."""
-        ids = self._mover_ids
-        return np.concatenate([self.data.xpos[ids], self.data.xquat[ids]], axis=1)
+        return self._movers.poses(self.data)
 
     def cart_boxes(self) -> Array:
         """Carts as boxes (k, 5)."""
@@ -164,6 +168,12 @@ class Simulation(TickedSimulation):
         """Call ``watcher`` after every physics step; for meters of contact, which are brief."""
         self._step_watchers.append(watcher)
 
+    def snapshot(self) -> Snapshot:
+        """State now; see :meth:`mjmr.loop.TickedSimulation.snapshot`."""
+        found = super().snapshot()
+        # who sleeps is not in the state vector, and what sleeps is where it last was computed
+        return replace(found, physics=copy.copy(self.data)) if self._sleeps else found
+
     def restore(self, snapshot: Snapshot) -> None:
         """Go back (or forward) to ``snapshot``; also out of a divergence."""
         super().restore(snapshot)
@@ -173,11 +183,24 @@ class Simulation(TickedSimulation):
         self.last_second.clear()
         self.last_second.keep(self.time)
 
+    def _lift(self, group: "Group", rows: Any, poses: Array) -> None:
+        if id(group) not in self._lifters:
+            self._lifters[id(group)] = Lifter(self.model, group, self._drives[id(group)])
+        before = self._physics_state()
+        self._lifters[id(group)].put_down(self.data, rows, poses)
+        self._set_physics_state(self._physics_state())  # contacts are those of the new places
+        if not self.world.overlap:
+            told = overlaps(self.model, self.data, [group.names[row] for row in rows])
+            if told:
+                self._set_physics_state(before)
+                raise InvalidInputError(f"robots are put down where there is room; {told}")
+
     def _begin_period(self) -> None:
         time, period, data = self.time, self.control_period, self.data
         for group, drive in self._each:
             start, target = group.next_ramp(time, period)
-            drive.ramp(data, start, target, period)
+            mistuned = group.platform.mistuned
+            drive.ramp(data, mistuned(start), mistuned(target), period)
         for sensor in self.actuated:
             sensor.actuate(data, period)
         if self._carts is not None:
@@ -226,7 +249,7 @@ class Simulation(TickedSimulation):
         self.last_second.keep(self.step * self.timestep)
         self._ticks_done += 1
         if self._ticks_done % 6 == 0:
-            self._history.append(self.snapshot())
+            self._history.append(super().snapshot())
 
     def _divergence(self, wrong: str = "") -> SimulationDivergedError:
         data = self.data
@@ -249,7 +272,10 @@ class Simulation(TickedSimulation):
         mujoco.mj_getState(self.model, self.data, state, _STATE)
         return state
 
-    def _set_physics_state(self, state: Array) -> None:
+    def _set_physics_state(self, state: Any) -> None:
+        if isinstance(state, mujoco.MjData):
+            mujoco.mj_copyData(self.data, self.model, state)
+            return
         mujoco.mj_setState(self.model, self.data, state, _STATE)
         mujoco.mj_forward(self.model, self.data)
         # mj_forward recomputes the warm start; put the stored one back

@@ -22,6 +22,15 @@ def check_start(model: "mujoco.MjModel", data: "mujoco.MjData", names: Sequence[
     Raises:
         InvalidInputError: Says which robots are in what, and how deep.
     """
+    told = overlaps(model, data, names)
+    if told:
+        raise InvalidInputError(
+            f"at the start these overlap: {told}; move them apart, or say World(overlap=True)"
+        )
+
+
+def overlaps(model: "mujoco.MjModel", data: "mujoco.MjData", names: Sequence[str]) -> str:
+    """Which of these robots are deeper than ``ALLOWED`` in what, in words; empty if none is."""
     robots, worst = set(names), {}
     for contact in data.contact[: data.ncon]:
         if contact.dist > -ALLOWED:
@@ -30,11 +39,7 @@ def check_start(model: "mujoco.MjModel", data: "mujoco.MjData", names: Sequence[
         # limbs of one robot may touch by construction
         if len(pair) == 2 and robots.intersection(pair):
             worst[tuple(pair)] = max(worst.get(tuple(pair), 0.0), -float(contact.dist))
-    if worst:
-        told = ", ".join(f"{a} and {b} by {1e3 * d:.0f} mm" for (a, b), d in worst.items())
-        raise InvalidInputError(
-            f"at the start these overlap: {told}; move them apart, or say World(overlap=True)"
-        )
+    return ", ".join(f"{a} and {b} by {1e3 * d:.0f} mm" for (a, b), d in worst.items())
 
 
 def _owner(model: Any, geom: int) -> str:

@@ -133,7 +133,7 @@ class Trace:
             found[f"sensor_{name}_sampled"] = np.array([s[1] for s in samples])
             found[f"sensor_{name}_delivered"] = np.array([s[2] for s in samples])
             found[f"sensor_{name}_values"] = np.array([s[3] for s in samples])
-        return found | self._message_table()
+        return found | self._message_table() | self._lift_table()
 
     def _message_table(self) -> dict[str, np.ndarray]:
         rows = [
@@ -144,6 +144,15 @@ class Trace:
         table = np.concatenate([np.empty((0, len(MESSAGE_COLUMNS))), *rows])
         columns = zip(MESSAGE_COLUMNS.items(), table.T, strict=True)
         return {name: column.astype(dtype) for (name, dtype), column in columns}
+
+    def _lift_table(self) -> dict[str, np.ndarray]:
+        """A row for every robot that was picked up and put down elsewhere."""
+        lifts = self.recording.lifts
+        return {
+            "lift_times": np.array([time for time, _, _ in lifts], dtype=np.float64),
+            "lift_robots": np.array([robot for _, robot, _ in lifts], dtype=np.int64),
+            "lift_poses": np.array([pose for _, _, pose in lifts]).reshape(-1, 3),
+        }
 
     def _contact_table(self, model: Any, k: int) -> dict[str, np.ndarray]:
         rows = self._contacts

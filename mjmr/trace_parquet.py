@@ -66,6 +66,8 @@ def pack_parquet(head: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> b
         _add_samples(rows, name.removesuffix("_values"), head["sensors"], arrays)
     _add_contacts(rows, arrays)
     _add_messages(rows, robots, arrays)
+    lifted = np.array(robots)[arrays["lift_robots"]]
+    rows.add("lift", arrays["lift_times"], [""], _POSE, arrays["lift_poses"][:, None], robot=lifted)
     table = rows.table(pa)
     captions = {
         "time": times,

@@ -1,4 +1,4 @@
-"""World: floor, walls, boxes, balls and groups of robots, declared once and built into an MjSpec.
+"""World: floor, walls, boxes, balls, discs and robots, declared once and built into an MjSpec.
 
 The declaration is what planners, meters and films read; the MjSpec is built from it when a
 simulation or a film needs one, so that a kinematic run loads no MuJoCo.
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mjmr.cart import Cart
+from mjmr.disc import Disc
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.group import Group
 from mjmr.mark import Mark
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 
 FLOORS = ("carpet", "concrete")
 LIGHTINGS = ("even", "uneven")
-_PROPS = ("box", "ball", "cart")  # what named_props() calls them, before a number
+_PROPS = ("box", "ball", "cart", "disc")  # what named_props() calls them, before a number
 _GROUP_NAME = re.compile(rf"(?!({'|'.join(_PROPS)})\d*$)[^/]+")
 
 
@@ -115,7 +116,7 @@ class World:
     Attributes:
         bounds: Inner faces of the wall (4,) [m].
         field: Marked playing field (4,) [m], or None.
-        props: Boxes, balls and carts, in order of declaration.
+        props: Boxes, balls, carts and discs, in order of declaration.
         marks: Painted on the floor.
         groups: Robots, in order of declaration.
         sensors: Cameras and other sensors that stand in the world, by name.
@@ -161,7 +162,7 @@ class World:
         check_material(wall_material)
         self.floor, self.lighting, self.overlap = floor, lighting, overlap
         self.wall_material = wall_material
-        self.props: list[Box | Ball | Cart] = []
+        self.props: list[Box | Ball | Cart | Disc] = []
         self.groups: list[Group] = []
         self.sensors: dict[str, Sensor] = {}
         self.simulation: Any = None
@@ -237,6 +238,15 @@ class World:
         cart = Cart(x=x, y=y, length=length, width=width, **options)
         self.props.append(cart)
         return cart
+
+    def add_disc(
+        self, x: float, y: float, radius: float, friction_force: float, **options: Any
+    ) -> Disc:
+        """Lay a disc on the floor that slides; see :class:`mjmr.disc.Disc` for the options."""
+        disc = Disc(x=x, y=y, radius=radius, friction_force=friction_force, **options)
+        self._check_disc(disc)
+        self.props.append(disc)
+        return disc
 
     def add_group(
         self, platform: "type[Platform] | Platform", poses: ArrayLike, **options: Any
@@ -365,12 +375,12 @@ class World:
         return np.array(rows, dtype=np.float64).reshape(-1, 5)
 
     @property
-    def movers(self) -> Sequence[tuple[str, Box | Ball]]:
+    def movers(self) -> Sequence[tuple[str, Box | Ball | Disc]]:
         """Props that can be moved, with their body names in the built model."""
         return [
             (name, prop)
             for name, prop in self.named_props()
-            if isinstance(prop, Ball) or (isinstance(prop, Box) and prop.mass is not None)
+            if isinstance(prop, Ball | Disc) or (isinstance(prop, Box) and prop.mass is not None)
         ]
 
     @property
@@ -378,7 +388,7 @@ class World:
         """Boxes that go to and fro by themselves, with their names in the built model."""
         return [(name, prop) for name, prop in self.named_props() if isinstance(prop, Cart)]
 
-    def named_props(self) -> Sequence[tuple[str, Box | Ball | Cart]]:
+    def named_props(self) -> Sequence[tuple[str, Box | Ball | Cart | Disc]]:
         """Props with their names in the built model."""
         return [(f"{type(p).__name__.lower()}{i}", p) for i, p in enumerate(self.props)]
 
@@ -408,19 +418,42 @@ class World:
         if name in self.sensors:
             raise InvalidInputError(f"there is a sensor named {name!r} in this world already")
 
-    def _check_inside(self, group: Group) -> None:
-        r = group.platform.radius
+    def _check_disc(self, disc: Disc) -> None:
+        low, high = self.bounds[:2] + disc.radius, self.bounds[2:] - disc.radius
+        if not (low[0] <= disc.x <= high[0] and low[1] <= disc.y <= high[1]):
+            raise InvalidInputError(
+                f"a disc of radius {disc.radius:g} m at ({disc.x:g}, {disc.y:g}) is outside the "
+                f"walls or in them; its centre must lie within x {low[0]:g} to {high[0]:g} and y "
+                f"{low[1]:g} to {high[1]:g} m"
+            )
+
+    def check_inside(self, group: Group, rows: ArrayLike, poses: ArrayLike) -> None:
+        """Refuse places of robots of a group that are not within the walls.
+
+        Args:
+            group: Whose robots.
+            rows: Their indices in the group (k,).
+            poses: Where they are to be (k, 3), world frame.
+
+        Raises:
+            InvalidInputError: Says who would be outside, and by how much.
+        """
+        r, where = group.platform.radius, np.asarray(poses)[:, :2]
         low, high = self.bounds[:2] + r, self.bounds[2:] - r
-        outside = ((group.start[:, :2] < low) | (group.start[:, :2] > high)).any(axis=1)
-        if outside.any():
-            beyond = np.maximum(low - group.start[:, :2], group.start[:, :2] - high).max(axis=1)
+        beyond = np.maximum(low - where, where - high).max(axis=1)
+        if (beyond > 0).any():
             names = ", ".join(
-                f"{group.names[i]} by {1e3 * beyond[i]:.0f} mm" for i in np.flatnonzero(outside)
+                f"{group.names[row]} by {1e3 * off:.0f} mm"
+                for row, off in zip(np.asarray(rows), beyond, strict=True)
+                if off > 0
             )
             raise InvalidInputError(
                 f"these robots start outside the walls or touch them: {names}; centres must lie "
                 f"within x {low[0]:g} to {high[0]:g} and y {low[1]:g} to {high[1]:g} m"
             )
+
+    def _check_inside(self, group: Group) -> None:
+        self.check_inside(group, range(group.n), group.start)
 
 
 def _rectangle(values: ArrayLike, name: str) -> NDArray[np.float64]:

@@ -7,6 +7,7 @@ import numpy as np
 
 from mjmr.cart import Cart
 from mjmr.cart_servos import CartServos, add_cart
+from mjmr.disc import Disc, add_disc
 from mjmr.robots.platform import FLOOR
 
 if TYPE_CHECKING:
@@ -42,6 +43,8 @@ def build_spec(world: "World") -> mujoco.MjSpec:
     for name, prop in world.named_props():
         if isinstance(prop, Cart):
             add_cart(spec, name, prop)
+        elif isinstance(prop, Disc):
+            add_disc(spec, name, prop, FLOOR)
         else:
             _prop(spec, name, prop)
     for group in world.groups:
@@ -156,6 +159,10 @@ def _floor(spec: mujoco.MjSpec, world: "World") -> None:
         pos=[*((low + high) / 2), 0],
         size=[half[0], half[1], 0.1],
         material="floor",
+        # everything that can touch (bit 1) touches the floor, but what has bit 8 in its place: see
+        # mjmr.disc
+        contype=4,
+        conaffinity=1,
         friction=[0.8, 0.005, 0.0005],
         group=0,
     )

@@ -139,7 +139,10 @@ def test_the_readme_counts_the_committed_verdicts():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("script", "said"), [("lidars.py", "clear"), ("dogs.py", "True")])
+@pytest.mark.parametrize(
+    ("script", "said"),
+    [("lidars.py", "clear"), ("dogs.py", "True"), ("laps.py", "3"), ("pushers.py", "True")],
+)
 def test_the_scripts_on_robots_print_what_they_say(tmp_path, script, said):
     write_files(ROOT / "docs" / "robots.md", tmp_path)
     done = run([sys.executable, script], tmp_path)

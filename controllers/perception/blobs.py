@@ -71,7 +71,7 @@ class BlobFinder:
             widest: Width or height [px] above which it is.
         """
         assert self._hsv is not None
-        raw = self.mask(colour)
+        raw = self._mask(colour)
         # noise makes specks, cheapest removed here: what remains is made of squares of 2 x 2 px
         squares = cv2.erode(raw, _SQUARE, anchor=(0, 0))
         clean = cv2.dilate(squares, _SQUARE, anchor=(1, 1))
@@ -99,8 +99,14 @@ class BlobFinder:
         return Blobs(table[:, :2] + 0.5, table[:, 2])
 
     def mask(self, colour: int) -> NDArray[np.uint8]:
-        """Pixels of one colour in the image looked at: 255, all others 0; (height, width)."""
-        assert self._hsv is not None
+        """Pixels of one colour in the image looked at, (height, width), 0 or 255, without specks.
+
+        Args:
+            colour: Index into the colours.
+        """
+        return cv2.morphologyEx(self._mask(colour), cv2.MORPH_OPEN, _SQUARE)  # pyright: ignore
+
+    def _mask(self, colour: int) -> NDArray[np.uint8]:
         low, high = int(self._low[colour]), int(self._high[colour])
         least = (int(self._least[colour]), self._dark)
         hsv = self._hsv

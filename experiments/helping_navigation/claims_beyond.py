@@ -76,7 +76,10 @@ def _caps() -> list[Claim]:
     return [
         Claim(
             id=f"few-capped-{world}",
-            text="2) and 3) find their way alone: Avoid Past is effective, VisBug is guaranteed",
+            text=(
+                "Avoid Past proves to be effective, VisBug is guaranteed to find a path, even when "
+                "no helping robots are present"
+            ),
             how="Avoid Past and VisBug, all teams, no noise: share of targets given up at 6000",
             bound=Bound("<=", 0.005),
             needs={**PLAIN, "world": world},

@@ -21,7 +21,7 @@ def _trap() -> list[Claim]:
     return [
         Claim(
             id="trap-stuck",
-            text="goal-sharing alone: R1 gets trapped again in the local minimum (figure 9)",
+            text="R1 gets trapped again in the local minimum (figure 9)",
             how="literal, potential field: share of runs that reach the goal within 5000 steps",
             bound=Bound("<=", 0.0),
             sizes=_ALL,
@@ -30,7 +30,7 @@ def _trap() -> list[Claim]:
         ),
         Claim(
             id="trap-freed",
-            text="with state-sharing R1 finally manages to find a path to the goal (figure 10)",
+            text="thanks to the help of R2, R1 finally manages to find a path (figure 10)",
             how="literal, Cr = 20: share of runs that reach the goal within 5000 steps",
             bound=Bound(">=", 1.0),
             sizes=_ALL,
@@ -39,7 +39,7 @@ def _trap() -> list[Claim]:
         ),
         Claim(
             id="trap-follows",
-            text="after several attempts",
+            text="after several attempts, it can be seen that R1 finally manages",
             how="literal, Cr = 3, 5 and 20: most follows of the mate before the goal was reached",
             bound=Bound("<=", 10.0),
             sizes=_ALL,
@@ -93,7 +93,7 @@ def _standing() -> list[Claim]:
     found = [
         Claim(
             id=f"standing-no-planner-{reading}",
-            text="in a static environment R1 reaches its goal by a finite set of straight legs",
+            text="in a static environment, this will guarantee R1 to finally reach its goal",
             how=f"{reading}, three standing supporters in sight in turn: calls of the planner",
             bound=Bound("<=", 0.0),
             sizes=_ALL,
@@ -105,7 +105,7 @@ def _standing() -> list[Claim]:
     found += [
         Claim(
             id=f"standing-straight-{reading}",
-            text="R1 heads to the robots that reflect its goal, in straight legs",
+            text="reach its goal while following a finite set of straight trajectories (static)",
             how=f"{reading}: steps / the way over all three supporters in steps",
             bound=Bound("<=", 1.02),
             sizes=_ALL,
@@ -145,7 +145,7 @@ def _lost() -> list[Claim]:
     return [
         Claim(
             id=f"lost-frames-{reading}-{world}-{planner}",
-            text="even if they are completely lost, other robots are still fully functional",
+            text="other robots, even if they are completely lost, are still fully functional",
             how=(
                 f"{reading}, four robots: supporters' frames anywhere and turned by any angle, "
                 "mean steps / with aligned frames, distance from 1"

@@ -205,7 +205,7 @@ class Journey:
         """Direction [rad], body frame, and distance [m] of where R1 goes."""
         if self._place is not None:
             return self.crew.bearing_to(0, self._place)
-        size = float(np.hypot(*self._direction))
+        size = float(np.linalg.norm(self._direction))
         if size < 0.05:  # in balance
             return math.nan, 1.0
         way = math.atan2(self._direction[1], self._direction[0])

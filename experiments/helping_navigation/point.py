@@ -92,7 +92,8 @@ def options_of(condition: Mapping[str, Any]) -> point_team.Options:
 def patrolling(condition: Mapping[str, Any], start: Array, seed: int) -> point_team.Team:
     """The explorer at ``start`` (2,) [m], supporters a third of the route apart.
 
-    A larger team has the smaller one's supporters where that has them, and one more.
+    A larger team has the smaller one's supporters where that has them, and one more. With the fault
+    ``dead`` the last supporter neither hears nor tells.
     """
     place, n = office(condition["world"]), condition["robots"]
     route = place.routes[0]
@@ -103,7 +104,9 @@ def patrolling(condition: Mapping[str, Any], start: Array, seed: int) -> point_t
         x, y, waypoint = patrol.place(route, (phase + k / 3) % 1.0 * length)
         places.append((x, y))
         following.append(waypoint)
-    return _team(condition, np.array(places), np.array(following), seed)
+    crew = _team(condition, np.array(places), np.array(following), seed)
+    crew.dead[1:][n - 2 :] = condition["fault"] == "dead"
+    return crew
 
 
 def _team(

@@ -17,7 +17,7 @@ TESTS = (
     "straight", "turn", "circle", "stop", "crowd", "odometry", "odometry-even", "square",
     "unicycle", "unicycle-open", "roll-over", "roll-over-steps", "walk", "get-up", "kick", "roll",
     "move", "pendulum", "tension", "dash", "lidar", "lidar-noise", "sonar", "sonar-thin", "camera",
-    "camera-in-view", "schedule", "noise",
+    "camera-in-view", "schedule", "noise", "push", "aim",
 )
 VARIANTS = (
     "plain", "forward", "reverse", "changing", "left", "right", "front", "back", "slow", "backward",
@@ -43,7 +43,17 @@ study = Study(
             "platform",
             "who is tested; sensors: what robots perceive with",
             "pioneer2dx",
-            ("pioneer2dx", "koala", "aibo_ers7", "tamiya_txt1", "nims", "soccer_bot", "sensors"),
+            (
+                "pioneer2dx",
+                "koala",
+                "aibo_ers7",
+                "tamiya_txt1",
+                "nims",
+                "round_pusher",
+                "soccer_bot",
+                "tj_pro",
+                "sensors",
+            ),
         ),
         Parameter(
             "test",

@@ -40,6 +40,13 @@ SHOWN = {
         "aibo-kick-forward-mean": "kicks forwards, mean",
         "aibo-kick-left-mean": "heads sideways, mean",
     },
+    "round_pusher": {
+        "round_pusher-straight": "5 m straight, error",
+        "round_pusher-turn": "360 degrees in place, error",
+        "round_pusher-push": "push against a wall / stated - 1",
+        "round_pusher-stop-tilt": "tilt in reversing from 0.5 m/s",
+        "round_pusher-aim": "turret off its aim after half a second",
+    },
     "nims": {
         "nims-arrival": "off its goal on arrival",
         "nims-residual-swing": "swing left over",
@@ -49,6 +56,12 @@ SHOWN = {
     "soccer_bot": {
         "soccer_bot-acceleration": "acceleration, error",
         "soccer_bot-braking": "braking, error",
+    },
+    "tj_pro": {
+        "tj_pro-straight": "3 m straight, error",
+        "tj_pro-turn": "18 turns of 20 degrees, error",
+        "tj_pro-arc": "arc of unequal servos, heading off",
+        "tj_pro-slip": "push on a wall, tyres slipping",
     },
 }
 

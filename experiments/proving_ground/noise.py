@@ -23,6 +23,7 @@ from mjmr.sensors.lidar import Lidar
 from mjmr.sensors.line_of_sight import LineOfSight
 from mjmr.sensors.localizer import Localizer
 from mjmr.sensors.pan_tilt import PanTilt
+from mjmr.sensors.proximity import InfraredProximity
 from mjmr.sensors.rangers import InfraredRanger, Sonar
 from mjmr.simulation import Simulation
 
@@ -87,8 +88,10 @@ _OF: dict[str, Callable[[], list[Sensor]]] = {
     "koala": lambda: [InfraredRanger(), PanTilt()],
     "aibo_ers7": lambda: [InfraredRanger(sites=("ir_head", "ir_chest")), ForceTorque(body="head")],
     "tamiya_txt1": lambda: [Sonar(), PanTilt()],
+    "round_pusher": list,
     "nims": lambda: [CableTension(), ForceTorque(site="package")],
     "soccer_bot": list,
+    "tj_pro": lambda: [InfraredProximity(trip=0.1)],
 }
 
 

@@ -7,7 +7,15 @@ from mjmr.study import Size
 
 _DT = (2.0, 5.0)
 _AIBO: dict[str, Any] = {"platform": "aibo_ers7", "friction": (0.6, 1.0), "dt_ms": (2.0, 4.0)}
-_ROBOTS = ("pioneer2dx", "koala", "aibo_ers7", "tamiya_txt1", "nims", "soccer_bot")
+_ROBOTS = (
+    "pioneer2dx", "koala", "aibo_ers7", "tamiya_txt1", "nims", "round_pusher", "soccer_bot",
+    "tj_pro",
+)  # fmt: skip
+_TJ_PRO: dict[str, Any] = {"platform": "tj_pro", "test": ("straight", "turn", "circle", "stop")}
+_PUSHER: dict[str, Any] = {
+    "platform": "round_pusher",
+    "test": ("straight", "turn", "push", "stop", "aim"),
+}
 _NIMS = ("lab-curve", "lab-tendon", "field-curve", "field-tendon")
 
 
@@ -71,6 +79,8 @@ def _large(seeds: int, worlds: int) -> tuple[Grid, ...]:
         Grid(**_AIBO, test="get-up", variant=("front", "left", "right", "back"), seeds=seeds),
         Grid(**_AIBO, test="kick", variant=("forward", "left", "right"), seeds=seeds),
         Grid(platform="aibo_ers7", test="roll", dt_ms=(2.0, 4.0), seeds=1),
+        Grid(**_TJ_PRO, dt_ms=(5.0, 10.0), seeds=5),
+        Grid(**_PUSHER, dt_ms=(5.0, 10.0), seeds=5),
         Grid(platform="sensors", test=("lidar", "camera", "camera-in-view"), seeds=5),
         Grid(platform="sensors", test=("lidar-noise", "sonar", "sonar-thin", "schedule"), seeds=1),
         Grid(platform=_ROBOTS, test="noise", seeds=100),
@@ -98,6 +108,8 @@ QUICK = Size(
             platform="aibo_ers7", test="kick", variant=("forward", "left"), friction=0.6,
             dt_ms=4.0, seeds=2,
         ),
+        Grid(**_TJ_PRO, dt_ms=10.0, seeds=1),
+        Grid(**_PUSHER, dt_ms=10.0, seeds=1),
         Grid(
             platform="sensors",
             test=("lidar", "camera", "camera-in-view", "lidar-noise", "schedule"), seeds=1,

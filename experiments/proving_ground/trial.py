@@ -14,7 +14,9 @@ MODULES = {
     "aibo_ers7": "aibo",
     "tamiya_txt1": "txt1",
     "nims": "nims",
+    "round_pusher": "round_pusher",
     "soccer_bot": "soccer",
+    "tj_pro": "tj_pro",
     "sensors": "sensors",
 }
 

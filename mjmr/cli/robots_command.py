@@ -81,7 +81,8 @@ def _list() -> int:
     table.columns[0].min_width = max(map(len, PLATFORMS))
     table.add_column("grade", justify="center")
     if measured:
-        table.add_column(f"measured ({_STUDY})", overflow="fold")
+        header = f"measured ({_STUDY})"
+        table.add_column(header, overflow="fold", min_width=len(header))
     broken = []
     for name in PLATFORMS:
         try:

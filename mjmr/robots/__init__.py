@@ -8,8 +8,10 @@ from mjmr.robots.aibo_ers7 import AiboERS7
 from mjmr.robots.koala import Koala
 from mjmr.robots.nims import Nims
 from mjmr.robots.pioneer2dx import Pioneer2DX
+from mjmr.robots.round_pusher import RoundPusher
 from mjmr.robots.soccer_bot import SoccerBot
 from mjmr.robots.tamiya_txt1 import TamiyaTXT1
+from mjmr.robots.tj_pro import TJPro
 
 if TYPE_CHECKING:
     from mjmr.robots.platform import Platform
@@ -19,8 +21,10 @@ PLATFORMS = {
     "koala": "mjmr.robots.koala:Koala",
     "nims": "mjmr.robots.nims:Nims",
     "pioneer2dx": "mjmr.robots.pioneer2dx:Pioneer2DX",
+    "round_pusher": "mjmr.robots.round_pusher:RoundPusher",
     "soccer_bot": "mjmr.robots.soccer_bot:SoccerBot",
     "tamiya_txt1": "mjmr.robots.tamiya_txt1:TamiyaTXT1",
+    "tj_pro": "mjmr.robots.tj_pro:TJPro",
 }
 __all__ = [
     "PLATFORMS",
@@ -28,7 +32,9 @@ __all__ = [
     "Koala",
     "Nims",
     "Pioneer2DX",
+    "RoundPusher",
     "SoccerBot",
+    "TJPro",
     "TamiyaTXT1",
     "platform_class",
 ]

@@ -99,7 +99,9 @@ def box_around(simulation: Simulation, seen: bool) -> tuple[Array, Array]:
     """
     model, data = simulation.model, simulation.data
     own = _moving(model, simulation.world.groups[0].prefixes[0])[model.geom_bodyid]
-    own &= (model.geom_group < 2) if seen else (model.geom_contype | model.geom_conaffinity) > 0
+    group = model.geom_group
+    touches = (model.geom_contype | model.geom_conaffinity) > 0
+    own &= (group < 2) if seen else (group == 0) & touches
     reach = np.array([_reach(model, data, k) for k in np.flatnonzero(own)])
     centres = data.geom_xpos[own]
     return (centres - reach).min(axis=0), (centres + reach).max(axis=0)

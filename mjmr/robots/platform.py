@@ -207,6 +207,14 @@ class Platform(ABC):
         """Twists (n, 3) that commands (n, c) ask for, body frame; may be the argument itself."""
         return command
 
+    def mistuned(self, command: Array) -> Array:
+        """Commands (n, c) that exact servos would need to do what these do with ``command``.
+
+        By default servos are exact, and it is the argument itself. Simulations apply it to the set
+        points; telemetry and traces show what was commanded.
+        """
+        return command
+
     def pace_of(self, command: Array) -> Array:
         """Speeds (n, 3) that ``wheel_turns`` needs the integrals of; by default the twists."""
         return self.twist_of(command)

@@ -212,7 +212,7 @@ def panel_track(film, index):
     footage, label, options = film._panels[0]
     panel = _Panel(footage, label, 64, 64, options)
     try:
-        return panel._track(index)
+        return footage.poses[panel._trail_rows(index), :, :2]
     finally:
         panel.close()
 

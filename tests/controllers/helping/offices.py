@@ -1,5 +1,6 @@
 """An office for tests, as arrays: world 1 of the study and a room with a dead end."""
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -11,10 +12,12 @@ FOLDER = Path(__file__).parents[3] / "experiments" / "helping_navigation" / "off
 RADIUS, KEPT = 0.22, 0.235
 
 
+@cache
 def place(name="world1"):
     return load_office(FOLDER / f"{name}.json", KEPT)
 
 
+@cache
 def walls(name="world1"):
     office = place(name)
     path, links = office.edges(KEPT + 0.001)

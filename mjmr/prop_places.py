@@ -1,0 +1,45 @@
+"""PropPlaces: the joints of a compiled model that say where the props are that can move."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mjmr.disc import JOINTS, Disc, disc_poses, disc_positions
+
+if TYPE_CHECKING:
+    import mujoco
+
+    from mjmr.world import World
+
+
+class PropPlaces:
+    """Every mover of a world in one compiled model."""
+
+    def __init__(self, model: "mujoco.MjModel", world: "World"):
+        """Look up every index once."""
+        movers = world.movers
+        discs = np.array([isinstance(prop, Disc) for _, prop in movers], dtype=bool)
+        first = np.array([model.joint(name).qposadr[0] for name, _ in movers], dtype=np.int64)
+        self._free, self._discs = np.flatnonzero(~discs), np.flatnonzero(discs)
+        self._free_qpos = first[self._free, None] + np.arange(7)
+        self._disc_qpos = first[self._discs, None] + np.arange(len(JOINTS))
+        self._bodies = np.array([model.body(name).id for name, _ in movers], dtype=np.int64)
+
+    def poses(self, data: "mujoco.MjData") -> NDArray[np.float64]:
+        """Poses of the movers (k, 7): position, quaternion; a new array."""
+        ids = self._bodies
+        if not len(self._discs):
+            return np.concatenate([data.xpos[ids], data.xquat[ids]], axis=1)
+        # MuJoCo computes places of bodies when a step begins: after it they are a step old
+        discs = disc_poses(data.qpos[self._disc_qpos])
+        if not len(self._free):
+            return discs
+        poses = np.concatenate([data.xpos[ids], data.xquat[ids]], axis=1)
+        poses[self._discs] = discs
+        return poses
+
+    def place(self, data: "mujoco.MjData", poses: NDArray[np.float64]) -> None:
+        """Put the movers at poses (k, 7): position, quaternion; for pictures."""
+        data.qpos[self._free_qpos] = poses[self._free]
+        data.qpos[self._disc_qpos] = disc_positions(poses[self._discs])
