@@ -9,7 +9,8 @@ whether they are in trouble themselves (state-sharing).
 * :mod:`controllers.helping.point_team` is the paper's own simulation of point robots, compiled.
 * The parts are modules of compiled functions over named tuples of arrays: ``goal_sharing``,
   ``state_sharing``, ``explorer`` (what goes first), ``frames`` (mutual bearings), ``visibility``,
-  ``patrol``, and the planners ``potential_field``, ``avoid_past`` and ``visbug``.
+  ``patrol``, and the planners ``potential_field`` and ``visbug``; Avoid Past is
+  :mod:`controllers.schemas.visits`.
 
 Source: A. Sgorbissa and R. C. Arkin, Local Navigation Strategies for a Team of Robots (c. 2003).
 """

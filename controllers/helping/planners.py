@@ -15,9 +15,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from controllers.helping import avoid_past, potential_field, visbug
+from controllers.helping import potential_field, visbug
 from controllers.helping.explorer import Settings
 from controllers.helping.visibility import RAYS, Walls
+from controllers.schemas import visits
 from mjmr.errors import InvalidInputError
 
 Array = NDArray[np.float64]
@@ -44,35 +45,35 @@ class PotentialField:
 
 
 class AvoidPast:
-    """See :mod:`controllers.helping.avoid_past`."""
+    """See :mod:`controllers.schemas.visits`."""
 
     def __init__(self, settings: Settings, walls: Walls | None = None, size: Any = (30.0, 30.0)):
         """Args: settings: Cell and bias. size: Of the world (2,) [m]. walls: Not used."""
         self._settings = settings
-        self._past = avoid_past.past(np.zeros(2), np.asarray(size, dtype=float), settings.cell)
+        self._past = visits.past(np.zeros(2), np.asarray(size, dtype=float), settings.cell)
 
     def begin(self) -> None:
         """Half of where it has been is forgotten."""
-        avoid_past.fade(self._past)
+        visits.fade(self._past)
 
     def pause(self, position: Array) -> None:
         """Count the cell all the same; choose afresh afterwards."""
-        avoid_past.visit(self._past, position[0], position[1], self._settings.cell)
+        visits.visit(self._past, position[0], position[1], self._settings.cell)
         self._past.place[:] = np.inf
 
     def step(self, position: Array, target: Array, ranges: Array) -> Array:
         """See the module."""
         size, bias = self._settings.cell, self._settings.bias
         x, y = position
-        avoid_past.visit(self._past, x, y, size)
-        ahead = ranges[:: len(RAYS) // avoid_past.HEADINGS]
+        visits.visit(self._past, x, y, size)
+        ahead = ranges[:: len(RAYS) // visits.HEADINGS]
         # on a robot with a body the way may close while it holds a heading
-        if avoid_past.due(self._past, x, y, size) or ahead[self._past.heading[0]] < 1e-3:
-            avoid_past.heading(
-                self._past, x, y, target[0] - x, target[1] - y, avoid_past.ANGLES,
+        if visits.due(self._past, x, y, size) or ahead[self._past.heading[0]] < 1e-3:
+            visits.heading(
+                self._past, x, y, target[0] - x, target[1] - y, visits.ANGLES,
                 np.ascontiguousarray(ahead), size, bias,
             )  # fmt: skip
-        angle = avoid_past.ANGLES[self._past.heading[0]]
+        angle = visits.ANGLES[self._past.heading[0]]
         return np.array([np.cos(angle), np.sin(angle)])
 
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from controllers.helping import avoid_past, potential_field, visbug
+from controllers.helping import potential_field, visbug
 from controllers.helping.explorer import (
     AVOID_PAST,
     GOAL,
@@ -38,6 +38,7 @@ from controllers.helping.goal_sharing import (
 from controllers.helping.patrol import advance
 from controllers.helping.state_sharing import Trouble, calm, untroubled
 from controllers.helping.visibility import RAYS, cast, move, sees
+from controllers.schemas import visits
 from mjmr.jit import njit
 
 
@@ -95,7 +96,7 @@ class Team(NamedTuple):
     known: Memory
     offered: Offers
     state: Trouble
-    past: avoid_past.Past
+    past: visits.Past
     bug: visbug.Bug
     ranges: NDArray[np.float64]
     mode: NDArray[np.int64]
@@ -134,7 +135,7 @@ def team(
         known=memory(n, ghosts),
         offered=offers(n, ghosts),
         state=untroubled(n),
-        past=avoid_past.past(np.zeros(2), size, settings.cell),
+        past=visits.past(np.zeros(2), size, settings.cell),
         bug=visbug.bug(),
         ranges=np.zeros(len(RAYS)),
         mode=np.full(1, PLAN, dtype=np.int64),
@@ -195,7 +196,7 @@ def begin(crew, x, y):
     new_goal(crew.known, crew.offered, 0, x, y)
     calm(crew.state, 0)
     crew.mode[0] = PLAN
-    avoid_past.fade(crew.past)
+    visits.fade(crew.past)
     visbug.forget_path(crew.bug)
 
 
@@ -269,22 +270,20 @@ def steer(crew, planner, x, y, walls, settings):
         return potential_field.direction(
             x - px, y - py, RAYS, crew.ranges, settings.reach, settings.gain
         )
-    return np.cos(avoid_past.ANGLES[crew.past.heading[0]]), np.sin(
-        avoid_past.ANGLES[crew.past.heading[0]]
-    )
+    return np.cos(visits.ANGLES[crew.past.heading[0]]), np.sin(visits.ANGLES[crew.past.heading[0]])
 
 
 @njit
 def _look_around(crew, planner, mode, x, y, walls, settings):
     """Avoid Past counts cells whoever steers, and chooses a heading where it steers."""
     px, py = crew.place[0, 0], crew.place[0, 1]
-    avoid_past.visit(crew.past, px, py, settings.cell)
+    visits.visit(crew.past, px, py, settings.cell)
     if mode != PLAN:
         crew.past.place[:] = np.inf  # choose afresh when it steers again
-    elif avoid_past.due(crew.past, px, py, settings.cell):
-        cast(px, py, avoid_past.ANGLES, 2.0, walls.motion, crew.ranges)
-        avoid_past.heading(
-            crew.past, px, py, x - px, y - py, avoid_past.ANGLES, crew.ranges, settings.cell,
+    elif visits.due(crew.past, px, py, settings.cell):
+        cast(px, py, visits.ANGLES, 2.0, walls.motion, crew.ranges)
+        visits.heading(
+            crew.past, px, py, x - px, y - py, visits.ANGLES, crew.ranges, settings.cell,
             settings.bias,
         )  # fmt: skip
 
