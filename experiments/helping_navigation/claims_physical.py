@@ -127,7 +127,7 @@ def _bodies() -> list[Claim]:
             bound_source="ours",
             sizes=_LARGE,
             needs={**_TOUR, "robots": 4},
-            evaluate=share("wall_contact_s"),
+            evaluate=share("office_contact_s"),
         ),
     ]
 

@@ -104,7 +104,7 @@ def measure(journey: Journey) -> Metrics:
         "call_steps": sum(leg.calls for leg in legs),
         "worst_miss_m": max(leg.miss for leg in legs if leg.reached or len(legs) == 1),
         "robot_contact_s": meter.robots,
-        "wall_contact_s": meter.obstacles,
+        "office_contact_s": meter.obstacles,
         "robot_contacts": meter.episodes,
         "offers": int(me.offered.taken[0]),
         "offers_vain": int(me.offered.vain[0]),
