@@ -6,11 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controllers.helping import RAYS, AvoidPast, PotentialField, Settings, visbug
+from controllers.helping.visibility import sees
 from controllers.mapping import ScanMap, free_ranges
 
 Array = NDArray[np.float64]
 _BODY, _KEPT = 0.32, 0.02  # m: disc that must be free where a planner wants to go, and short of it
 _RANGE = 3.0  # m
+_PATIENCE = 20  # motion steps that a target may be out of sight
 _PLAN, _SEE = 0.36, 0.28  # m: walls grown for Bug2's path, and for what is in sight of it
 
 
@@ -47,7 +49,7 @@ class Guide:
         self._sight_edges = np.empty((0, 4))
         self._version = -1
         self._line: tuple[Array, Array] | None = None
-        self._at = np.zeros(2)
+        self._at, self._unseen = np.zeros(2), 0
         self.unreachable = 0
 
     def new_goal(self) -> None:
@@ -112,6 +114,11 @@ class Guide:
                 self._resume(kept)
         tx, ty = visbug.target(self._bug, at[0], at[1], self._settings.vision, self._sight_edges)
         self._at = np.array([tx, ty])
+        # who made way for others may have strayed out of sight of its target: a new M-line then
+        unseen = not sees(at[0], at[1], tx, ty, self._settings.vision, self._sight_edges)
+        self._unseen = self._unseen + 1 if unseen else 0
+        if self._unseen > _PATIENCE:
+            self._line, self._unseen = None, 0
         return self._at
 
     def _progress(self) -> float:

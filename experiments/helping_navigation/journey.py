@@ -21,8 +21,8 @@ from mjmr.geometry import wrap_angle
 Array = NDArray[np.float64]
 ASKING = 1.0  # s: R1 stands so long with a new goal if there is somebody to answer
 ARRIVE = 0.10  # m: at a ghost, more exactly than which no body gets
-AT_POST = 0.15  # m: a supporter that stands is where it belongs
 STAND_OFF = 0.9  # m: R1 keeps from a mate it goes after
+AT_POST = 0.15  # m: a supporter that stands is where it belongs
 MODES = {GOAL: "sees its goal", OFFER: "follows an offer", MATE: "follows a mate", PLAN: "plans"}
 
 
