@@ -113,6 +113,20 @@ def _open_field() -> list[Claim]:
             evaluate=extreme("coding_excess_units"),
         ),
         Claim(
+            id="vector-coded-in-range",
+            text="the resolution of 2.8 degrees was sufficient",
+            published="2.8 deg, whole units",
+            how=(
+                "the same, while the displacement fits into its byte (255 units); written when "
+                "vector-coded had failed"
+            ),
+            bound=Bound("<=", 0.01),
+            unit="units",
+            sizes=_ALL,
+            needs={**field, "compass": "exact"},
+            evaluate=extreme("coding_excess_in_range_units"),
+        ),
+        Claim(
             id="vector-noisy",
             text="errors fluctuated, so that their combined effect was minimal",
             how="400 loops of wandering, compass of 2 deg noise and steps: error / path, worst run",
