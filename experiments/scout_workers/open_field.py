@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from controllers.scouting import UNIT, ScoutTeam
-from controllers.scouting.coding import from_code, to_code
+from controllers.scouting.coding import FARTHEST, from_code, to_code
 from experiments.scout_workers.planar import PlanarField
 from mjmr.randomness import Streams
 
@@ -20,8 +20,8 @@ def open_field(given: Mapping[str, Any], seed: int) -> dict[str, Any]:
 
     Returns:
         Error of the vector before coding [units] and as a share of the path, and how far the
-        coded vector is off the uncoded one over what coding allows: half a unit along, half a
-        step of direction across.
+        coded vector is off the uncoded one over what coding allows, half a unit along and half a
+        step of direction across: of all vectors, and of those a byte can say, up to 255 units.
     """
     from experiments.scout_workers.trial import behaviour, compass
 
@@ -38,14 +38,22 @@ def open_field(given: Mapping[str, Any], seed: int) -> dict[str, Any]:
     )
     team = ScoutTeam(1, rng=Streams(seed).generator("controllers"), behaviour=behaviour(given))
     field.put_down(0)
-    coding = 0.0
+    coding = sendable = 0.0
     for _ in range(LOOPS):
         field.advance(team.step(field.time, *field.sense()))
         vector = team.travelled[0]
         d = float(np.hypot(*vector))
         off = float(np.hypot(*(from_code(*to_code(vector)) - vector)))
-        coding = max(coding, off - math.hypot(0.5, 0.0245 * d))
+        excess = off - math.hypot(0.5, 0.0245 * d)
+        coding = max(coding, excess)
+        if d <= FARTHEST:
+            sendable = max(sendable, excess)
     true = (field.pose[0, :2] - middle) / UNIT
     error = float(np.hypot(*(team.travelled[0] - true)))
     way = float(field.tally().way[0]) / UNIT
-    return {"error_units": error, "error_pct": 100 * error / way, "coding_excess_units": coding}
+    return {
+        "error_units": error,
+        "error_pct": 100 * error / way,
+        "coding_excess_units": coding,
+        "sendable_excess_units": sendable,
+    }

@@ -118,9 +118,9 @@ def _shares(rows: Table, path: Path, axis: str, label: str, by: str) -> Path:
         for value, at in rows.split(by):
             for mode, of_mode in at.split("mode"):
                 points, estimates = [], []
-                for x in sorted(float(v) for v in of_mode.distinct(axis)):
+                for x in sorted(of_mode.distinct(axis), key=float):
                     values = of_mode.where(**{axis: x}).values("success").astype(float)
-                    points.append(x)
+                    points.append(float(x))
                     whole = bool(np.isin(values, (0, 1)).all())
                     estimates.append((statistics.proportion if whole else statistics.mean)(values))
                 interval_line(axes, points, estimates, f"{by} {value}, {mode}")
