@@ -1,23 +1,27 @@
 """Avoid past: towards where a robot has been least."""
 
 from dataclasses import KW_ONLY, dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from controllers.schemas.base import Schema, View
 from controllers.schemas.percepts import Array
+from controllers.schemas.visits import ANGLES, HEADINGS, Past, due, heading, visit
 from mjmr.errors import InvalidInputError
 from mjmr.jit import njit
 
-_HEADINGS = 16
-_LOOKS = 3  # cells ahead
+_BLOCKED = 1e-3  # m: a way this short is none
 
 
-@dataclass(slots=True)
-class _Visits:
-    counts: NDArray[np.int64]
+class _Pasts(NamedTuple):
+    """Of n robots: see :class:`controllers.schemas.visits.Past`."""
+
+    visits: NDArray[np.int64]
+    low: Array
     cell: NDArray[np.int64]
+    place: Array
     heading: NDArray[np.int64]
 
 
@@ -25,10 +29,8 @@ class _Visits:
 class AvoidPast(Schema):
     """Along the one of 16 headings that leads where this robot has been least.
 
-    Each robot counts its visits to the cells of a grid. As it enters a cell it takes the heading
-    with the least mean count one, two and three cells ahead, and keeps it until the next cell.
-    What a thing blocks counts as the most visited cell, and so does what lies behind it. A bias
-    towards a goal decides between equals.
+    Each robot counts its visits to the cells of a grid, and chooses after the way of a cell; see
+    :mod:`controllers.schemas.visits`.
 
     Source: T. Balch and R. C. Arkin, Avoiding the past: a simple but effective strategy for
     reactive navigation, ICRA 1993, give counts a repelling force each; choosing among headings is
@@ -40,8 +42,9 @@ class AvoidPast(Schema):
         towards: Percept of the goal, or None.
         cell: Side of a cell [m].
         clearance: Of a heading from things, robot's radius included [m].
-        bias: Visits that heading straight for the goal is worth.
-        cells: The grid's side in cells; further places are counted as if the grid were rolled up.
+        bias: Visits that a heading straight away from the goal costs against one straight at it.
+        extent: From its start a robot's visits are told apart this far in x and y [m]; further
+            away they count as those at the border.
     """
 
     place: str
@@ -50,8 +53,8 @@ class AvoidPast(Schema):
     towards: str | None = None
     cell: float = 0.4
     clearance: float = 0.3
-    bias: float = 0.3
-    cells: int = 128
+    bias: float = 0.6
+    extent: float = 25.0
 
     def __post_init__(self):
         if not (0 < self.cell < np.inf and self.clearance >= 0 and self.bias >= 0):
@@ -59,10 +62,10 @@ class AvoidPast(Schema):
                 f"{self.label}: cell must be positive, clearance and bias 0 or more; got "
                 f"{self.cell} m, {self.clearance} m and {self.bias}"
             )
-        if self.cells < 2 * _LOOKS + 1:
+        if not self.cell < self.extent < np.inf:
             raise InvalidInputError(
-                f"{self.label}: the grid has {2 * _LOOKS + 1} cells a side or more; "
-                f"got {self.cells}"
+                f"{self.label}: extent must be more than a cell of {self.cell} m and finite; got "
+                f"{self.extent} m"
             )
 
     @property
@@ -75,65 +78,42 @@ class AvoidPast(Schema):
         """Place, walls and goal."""
         return (self.place, self.walls, *((self.towards,) if self.towards else ()))
 
-    def start(self, n: int, rng: np.random.Generator) -> _Visits:
+    def start(self, n: int, rng: np.random.Generator) -> _Pasts:
         """Nowhere yet."""
-        return _Visits(
-            np.zeros((n, self.cells, self.cells), dtype=np.int64),
-            np.full((n, 2), np.iinfo(np.int64).min),
-            np.zeros(n, dtype=np.int64),
-        )
+        side = int(np.ceil(2 * self.extent / self.cell)) + 1
+        return _Pasts(
+            np.zeros((n, side, side), dtype=np.int64), np.full(2, -self.extent),
+            np.full((n, 2), -1, dtype=np.int64), np.full((n, 2), np.inf),
+            np.zeros((n, 1), dtype=np.int64),
+        )  # fmt: skip
 
     def field(self, view: View) -> Array:
         """Unit vectors (n, 2); 0 for robots that do not know where they are."""
-        walls, memory = view.things(self.walls), view.memory(self)
+        walls, pasts = view.things(self.walls), view.memory(self)
         goal = view.direction(self.towards) if self.towards else np.zeros((view.n, 2))
         return _least_visited(
-            memory.counts, memory.cell, memory.heading, view.vector(self.place),
-            walls.offset, walls.radius, walls.valid, goal, self.cell, self.clearance, self.bias,
+            pasts, view.vector(self.place), walls.offset, walls.radius, walls.valid, goal,
+            self.cell, self.clearance, self.bias,
         )  # fmt: skip
 
 
 @njit
-def _least_visited(
-    counts, cell, heading, place, offset, radius, valid, goal, side, clearance, bias
-):
-    n, cells = counts.shape[0], counts.shape[1]
+def _least_visited(pasts, place, offset, radius, valid, goal, size, clearance, bias):
+    n = len(place)
     out = np.zeros((n, 2))
+    ranges = np.empty(HEADINGS)
     for i in range(n):
         x, y = place[i, 0], place[i, 1]
         if not (np.isfinite(x) and np.isfinite(y)):
             continue
-        col, row = int(np.floor(x / side)), int(np.floor(y / side))
-        angle = 2.0 * np.pi * heading[i] / _HEADINGS
-        free = _free(offset[i], radius[i], valid[i], np.cos(angle), np.sin(angle), clearance)
-        entered = col != cell[i, 0] or row != cell[i, 1]
-        if entered:
-            cell[i, 0], cell[i, 1] = col, row
-            counts[i, col % cells, row % cells] += 1
-        if entered or free < side / 2.0:
-            most = 0
-            for u in range(-_LOOKS, _LOOKS + 1):
-                for v in range(-_LOOKS, _LOOKS + 1):
-                    most = max(most, counts[i, (col + u) % cells, (row + v) % cells])
-            best = np.inf
-            for h in range(_HEADINGS):
-                a = 2.0 * np.pi * h / _HEADINGS
-                c, s = np.cos(a), np.sin(a)
-                free = _free(offset[i], radius[i], valid[i], c, s, clearance)
-                seen = 0.0
-                for k in range(1, _LOOKS + 1):
-                    d = k * side
-                    if d > free:
-                        seen += most + 1.0
-                    else:
-                        u = int(np.floor((x + d * c) / side)) % cells
-                        v = int(np.floor((y + d * s) / side)) % cells
-                        seen += counts[i, u, v]
-                score = seen / _LOOKS - bias * (c * goal[i, 0] + s * goal[i, 1])
-                if score < best - 1e-9:
-                    best = score
-                    heading[i] = h
-        angle = 2.0 * np.pi * heading[i] / _HEADINGS
+        been = Past(pasts.visits[i], pasts.low, pasts.cell[i], pasts.place[i], pasts.heading[i])
+        for k in range(HEADINGS):
+            c, s = np.cos(ANGLES[k]), np.sin(ANGLES[k])
+            ranges[k] = _free(offset[i], radius[i], valid[i], c, s, clearance)
+        visit(been, x, y, size)
+        if due(been, x, y, size) or ranges[been.heading[0]] < _BLOCKED:
+            heading(been, x, y, goal[i, 0], goal[i, 1], ANGLES, ranges, size, bias)
+        angle = ANGLES[been.heading[0]]
         out[i, 0], out[i, 1] = np.cos(angle), np.sin(angle)
     return out
 

@@ -112,18 +112,19 @@ def _open_field() -> list[Claim]:
             needs={**field, "compass": "exact"},
             evaluate=extreme("coding_excess_units"),
         ),
-        # stands beside vector-coded, in the knowledge of its result: wanderers of 400 loops get
-        # farther than a byte can say, 255 units or 19.4 m, and are then sent as 255
         Claim(
-            id="vector-coded-sendable",
+            id="vector-coded-in-range",
             text="the resolution of 2.8 degrees was sufficient",
             published="2.8 deg, whole units",
-            how="the same, of vectors of up to 255 units, what a byte can say; worst run",
+            how=(
+                "the same, while the displacement fits into its byte (255 units); written when "
+                "vector-coded had failed"
+            ),
             bound=Bound("<=", 0.01),
             unit="units",
             sizes=_ALL,
             needs={**field, "compass": "exact"},
-            evaluate=extreme("sendable_excess_units"),
+            evaluate=extreme("coding_excess_in_range_units"),
         ),
         Claim(
             id="vector-noisy",

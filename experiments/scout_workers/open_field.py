@@ -20,8 +20,8 @@ def open_field(given: Mapping[str, Any], seed: int) -> dict[str, Any]:
 
     Returns:
         Error of the vector before coding [units] and as a share of the path, and how far the
-        coded vector is off the uncoded one over what coding allows, half a unit along and half a
-        step of direction across: of all vectors, and of those a byte can say, up to 255 units.
+        coded vector is off the uncoded one over what coding allows: half a unit along, half a
+        step of direction across; the same while the displacement fits into its byte.
     """
     from experiments.scout_workers.trial import behaviour, compass
 
@@ -38,7 +38,7 @@ def open_field(given: Mapping[str, Any], seed: int) -> dict[str, Any]:
     )
     team = ScoutTeam(1, rng=Streams(seed).generator("controllers"), behaviour=behaviour(given))
     field.put_down(0)
-    coding = sendable = 0.0
+    coding = in_range = 0.0
     for _ in range(LOOPS):
         field.advance(team.step(field.time, *field.sense()))
         vector = team.travelled[0]
@@ -47,7 +47,7 @@ def open_field(given: Mapping[str, Any], seed: int) -> dict[str, Any]:
         excess = off - math.hypot(0.5, 0.0245 * d)
         coding = max(coding, excess)
         if d <= FARTHEST:
-            sendable = max(sendable, excess)
+            in_range = max(in_range, excess)
     true = (field.pose[0, :2] - middle) / UNIT
     error = float(np.hypot(*(team.travelled[0] - true)))
     way = float(field.tally().way[0]) / UNIT
@@ -55,5 +55,5 @@ def open_field(given: Mapping[str, Any], seed: int) -> dict[str, Any]:
         "error_units": error,
         "error_pct": 100 * error / way,
         "coding_excess_units": coding,
-        "sendable_excess_units": sendable,
+        "coding_excess_in_range_units": in_range,
     }

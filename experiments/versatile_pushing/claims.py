@@ -279,6 +279,7 @@ def _ratio(table: Table) -> Evidence:
 
 def _extreme(table: Table, which: Callable[[list[float]], float]) -> Evidence:
     """The extreme share of successes over teams and p."""
+    table.values("success")  # says so if there are no trials
     shares = [
         100.0 * float(np.mean(part.values("success")))
         for _, team in table.split("robots")

@@ -59,6 +59,13 @@ def _whole(
         )
         for w in (1, 2)
     )  # fmt: skip
+    spares = tuple(
+        Grid(
+            **TRANSPORT, weight=w, robots=w + 2, p=2.0, failure="stopped", recovery=True,
+            duration=LONG, seeds=trials,
+        )
+        for w in (1, 2)
+    )  # fmt: skip
     return (
         Grid(**FORAGING, map=tuple(range(maps)), c=(0.0, 1.0), duration=LIMIT, seeds=foraging),
         Grid(**CONSTRUCTION, map=tuple(range(nests)), duration=LIMIT, seeds=construction),
@@ -70,6 +77,7 @@ def _whole(
         Grid(**TRANSPORT, **table, weight=2, robots=(3, 4), duration=limit),
         *few,
         *stops,
+        *spares,
         Grid(
             **TRANSPORT, weight=1, robots=2, p=2.0, failure="camera", duration=SHORT, seeds=trials
         ),

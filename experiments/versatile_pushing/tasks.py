@@ -155,13 +155,7 @@ def metrics(watch: Watch, tally: Tally, pusher: Pusher, condition: Mapping[str, 
     finished = watch.finished < np.inf
     radius = TASKS[condition["task"]].disc_radius
     wall = np.abs(watch.places).max(axis=1) > HALF - radius - _ON_WALL
-    ring: Metrics = {"ring_gap_deg": None, "places": None}
-    if condition["task"] == "construction":
-        # where the discs are in the end, for a plot
-        told = " ".join(f"{x:.2f},{y:.2f}" for x, y in watch.places)
-        ring = {"ring_gap_deg": largest_gap(watch.places), "places": told}
-    return {
-        **ring,
+    found: Metrics = {
         "success": bool(finished),
         "share": float(watch.done.mean()),
         "time_s": float(min(watch.finished, condition["duration"])),
@@ -169,10 +163,19 @@ def metrics(watch: Watch, tally: Tally, pusher: Pusher, condition: Mapping[str, 
         "on_wall": int((wall & ~watch.done).sum()),
         "wander": float(tally.ticks[0] / tally.ticks.sum()),
         "push": float(tally.ticks[2] / tally.ticks.sum()),
-        "dark_wander": tally.dark_wander_share if condition["failure"] == "camera" else None,
-        "p_changes": pusher.recovery.changes if pusher.recovery else None,
         "switches": int(pusher.behaviour.transitions.sum()),
     }
+    if condition["failure"] == "camera":
+        found["dark_wander"] = tally.dark_wander_share
+        # when the last robot had left wandering again; None if one never did
+        found["back_s"] = None if np.isnan(tally.back).any() else float(tally.back.max())
+    if pusher.recovery is not None:
+        found["p_changes"] = pusher.recovery.changes
+    if condition["task"] == "construction":
+        found["ring_gap_deg"] = largest_gap(watch.places)
+        # where the discs are in the end, for a plot
+        found["places"] = " ".join(f"{x:.2f},{y:.2f}" for x, y in watch.places)
+    return found
 
 
 def largest_gap(places: Array) -> float:

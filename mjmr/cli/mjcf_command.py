@@ -8,7 +8,7 @@ from typing import Annotated
 from tyro.conf import Positional
 
 from mjmr.cli.parsing import StudyName, option, parse
-from mjmr.errors import MjmrError
+from mjmr.errors import InvalidInputError, MjmrError
 
 _MORE = """
 EXAMPLES
@@ -39,6 +39,10 @@ class Mjcf:
 def main(arguments: Sequence[str]) -> int:
     """Write a condition's model."""
     a = parse(Mjcf, "mjcf", arguments, _MORE)
+    if "=" in a.file.name and not a.file.suffix:
+        raise InvalidInputError(
+            f"the file comes before the condition: mjmr mjcf {a.study} FILE.xml {a.file}"
+        )
     from mjmr.conditions import parse_condition
     from mjmr.files import write_atomically
     from mjmr.registry import load_study

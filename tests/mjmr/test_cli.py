@@ -69,6 +69,7 @@ BAD = {
     "mjcf toy": "missing from mjmr mjcf: FILE.xml",
     "mjcf toy a.xml mod=metric": "unknown condition 'mod'; valid: mode",
     "mjcf toy a.xml mode=metric,physical": "mode takes one value here",
+    "mjcf toy mode=metric": "the file comes before the condition: mjmr mjcf toy FILE.xml",
     "mjcf toy nowhere/a.xml": "cannot write nowhere/a.xml",
     "bench tyo": "unknown study 'tyo'",
     "bench --size hug": "unknown size 'hug'; valid: ",
