@@ -118,8 +118,8 @@ def _shares(rows: Table, path: Path, axis: str, label: str, by: str) -> Path:
         for value, at in rows.split(by):
             for mode, of_mode in at.split("mode"):
                 points, estimates = [], []
-                for x, of_x in sorted(of_mode.split(axis), key=lambda pair: float(pair[0])):
-                    values = of_x.values("success").astype(float)
+                for x in sorted(of_mode.distinct(axis), key=float):
+                    values = of_mode.where(**{axis: x}).values("success").astype(float)
                     points.append(float(x))
                     whole = bool(np.isin(values, (0, 1)).all())
                     estimates.append((statistics.proportion if whole else statistics.mean)(values))

@@ -109,7 +109,7 @@ STANDARD = Size(
     "standard",
     grids=_large(planar=60, extra=40, scouts=40, teams=20, physical=30, fresh=15, crowds=5),
     default_seeds=60,
-    expected_minutes=13.0,
+    expected_minutes=16.0,
     note="60 robots in MuJoCo: 5 scouts in each of four mazes",
 )
 FULL = Size(
