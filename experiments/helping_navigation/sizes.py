@@ -65,19 +65,19 @@ QUICK = Size(
         *_chain(10, 1),
     ),
     default_seeds=2,
-    expected_minutes=0.2,
+    expected_minutes=0.4,
     note="world 1 alone, no potential field on tours, no noise",
 )
 STANDARD = Size(
     "standard",
     (*PHYSICAL["standard"], *_tables(60), *_noise(60), *_lost(60), *_trap(10), *_chain(20, 3)),
     default_seeds=3,
-    expected_minutes=2.0,
+    expected_minutes=8.0,
     note="3 tasks of 60 targets; the paper's tables are 5 of 200",
 )
 FULL = Size(
     "full",
     (*PHYSICAL["full"], *_tables(200), *_noise(200), *_lost(200), *_trap(30), *_chain(20, 5)),
     default_seeds=5,
-    expected_minutes=8.0,
+    expected_minutes=30.0,
 )
