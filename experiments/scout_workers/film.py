@@ -1,5 +1,6 @@
 """The study's film: a scout's wandering and its worker's run, in two mazes side by side."""
 
+import dataclasses
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from mjmr.study import Study
 
 SHOWN = (("m3", 1), ("m4", 0))
 """Mazes and seeds."""
+_SPEED = 6.0  # times real time, unless asked otherwise
 
 
 def world(condition: Mapping[str, Any]) -> Any:
@@ -57,6 +59,7 @@ def show(name: str, seed: int) -> Recording:
 
 def film(study: Study, path: Path, options: FilmOptions) -> None:
     """Write the film."""
+    options = dataclasses.replace(options, speed=options.speed or _SPEED)
     picture = Film(
         f"Scout workers: one vector leads the worker to the goal{study.swapped}", options
     )
