@@ -5,36 +5,16 @@ The paper simulated no physics and says none of this: bounds come from what the 
 fixed before the runs that decide them.
 """
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
+from experiments.versatile_pushing.sizes import HEADINGS, TIMESTEPS, WEIGHTS
 from mjmr.claims import Bound, Claim, Evidence, Table
-from mjmr.conditions import Grid
 
-WEIGHTS = (0, 1, 2)
-HEADINGS = (0.0, 22.0, 45.0, 90.0)  # deg
-OFF_NORMALS = (60.0, 67.5, 75.0)  # deg
-TIMESTEPS = (10.0, 5.0)  # ms
 _ALL = ("quick", "standard", "full")
 _LARGE = ("standard", "full")
 _WORDS = "a weight of w takes w + 1 robots"
-
-
-def pushing_grids(seeds: int, timesteps: Sequence[float] = TIMESTEPS) -> list[Grid]:
-    """Conditions of every test of :mod:`experiments.versatile_pushing.pushing`, by their task."""
-    dt = tuple(timesteps)
-    return [
-        Grid(task="stall", dt_ms=dt, seeds=seeds),
-        Grid(task="held", weight=(1, 2), heading_deg=HEADINGS, dt_ms=dt, seeds=seeds),
-        Grid(
-            task=("moved", "moved-from-rest"), weight=WEIGHTS, heading_deg=HEADINGS, dt_ms=dt,
-            seeds=seeds,
-        ),
-        Grid(task="wedged", weight=1, off_normal_deg=OFF_NORMALS, dt_ms=dt, seeds=seeds),
-        Grid(task="wedged-anywhere", weight=1, dt_ms=dt, seeds=4 * seeds),
-    ]  # fmt: skip
 
 
 def claims_pushing() -> list[Claim]:

@@ -3,7 +3,8 @@
 Paired conditions share their list of maps: both c of foraging push the same discs.
 """
 
-from experiments.versatile_pushing.claims_pushing import pushing_grids
+from collections.abc import Sequence
+
 from mjmr.conditions import Grid
 from mjmr.study import Size
 
@@ -15,6 +16,26 @@ FORAGING = {"task": "foraging", "p": 1.0}
 CONSTRUCTION = {"task": "construction", "b": True}
 TRANSPORT = {"task": "transport", "c": 1.0}
 TOO_FEW = ((1, 1), (2, 1), (2, 2))  # weight, robots
+WEIGHTS = (0, 1, 2)
+HEADINGS = (0.0, 22.0, 45.0, 90.0)  # deg
+OFF_NORMALS = (60.0, 67.5, 75.0)  # deg
+TIMESTEPS = (10.0, 5.0)  # ms
+
+
+def pushing_grids(seeds: int, timesteps: Sequence[float] = TIMESTEPS) -> list[Grid]:
+    """Conditions of every test of :mod:`experiments.versatile_pushing.pushing`, by their task."""
+    dt = tuple(timesteps)
+    return [
+        Grid(task="stall", dt_ms=dt, seeds=seeds),
+        Grid(task="held", weight=(1, 2), heading_deg=HEADINGS, dt_ms=dt, seeds=seeds),
+        Grid(
+            task=("moved", "moved-from-rest"), weight=WEIGHTS, heading_deg=HEADINGS, dt_ms=dt,
+            seeds=seeds,
+        ),
+        Grid(task="wedged", weight=1, off_normal_deg=OFF_NORMALS, dt_ms=dt, seeds=seeds),
+        Grid(task="wedged-anywhere", weight=1, dt_ms=dt, seeds=4 * seeds),
+    ]  # fmt: skip
+
 
 QUICK = Size(
     "quick",

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from experiments.versatile_pushing import claims_pushing, pushing
+from experiments.versatile_pushing import claims_pushing, pushing, sizes
 from mjmr.claims import judge_all
 from mjmr.conditions import Parameter
 from mjmr.robots.round_pusher import RoundPusher
@@ -79,7 +79,7 @@ def test_seeds_draw_directions_and_the_same_seed_the_same_numbers():
 
 def test_claims_decide_what_the_trials_say():
     rows = []
-    for grid in claims_pushing.pushing_grids(1, timesteps=(10.0,)):
+    for grid in sizes.pushing_grids(1, timesteps=(10.0,)):
         for condition in grid.conditions(PARAMETERS):
             metrics = {"error_pct": 0.1, "creep_mm": 1.0, "arrival_mm": 10.0, "push_share": 1.0,
                        "way": 0.1 if "wedged" in condition["task"] else 2.2}  # fmt: skip
@@ -100,7 +100,7 @@ def test_claims_decide_what_the_trials_say():
 
 
 def test_claims_rest_on_trials_that_every_size_makes():
-    tasks = {grid.values["task"] for grid in claims_pushing.pushing_grids(1)}
+    tasks = {grid.values["task"] for grid in sizes.pushing_grids(1)}
     told = {t for task in tasks for t in (task if isinstance(task, tuple) else (task,))}
     assert told == set(pushing.TESTS)
     for claim in claims_pushing.claims_pushing():

@@ -307,3 +307,18 @@ def test_every_example_in_the_helps_is_good_input(capsys):
                 parse_filter(load_study("safe-navigation").parameters, conditions)
                 seen += 1
     assert seen >= 8
+
+
+def test_declarations_of_installed_studies_load_nothing_heavy():
+    code = (
+        "import sys\nfrom mjmr.registry import load_study, study_references\n"
+        "for name in study_references(): load_study(name)\n"
+        "heavy = {'numpy', 'mujoco', 'numba', 'matplotlib', 'scipy', 'cv2', 'shapely'}\n"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    environment = {k: v for k, v in os.environ.items() if k != "MJMR_STUDIES"}
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, env=environment
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[-1] == "[]"
