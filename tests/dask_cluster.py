@@ -21,11 +21,7 @@ class Cluster:
 
     def __init__(self, folder, workers=0, **environment):
         self.folder, self.started = folder, []
-        port = free_port()
-        self.address = f"tcp://127.0.0.1:{port}"
-        words = ("--host", "127.0.0.1", "--port", str(port), "--no-dashboard", "--no-show")
-        self.scheduler = self._start("scheduler", words, {})
-        self._wait_for_port(port)
+        self.scheduler = self._start_scheduler()
         if workers:
             self.add(workers, **environment)
             self.wait_for(workers)
@@ -52,13 +48,28 @@ class Cluster:
         self.started.append(process)
         return process
 
-    def _wait_for_port(self, port):
-        end = time.monotonic() + 30.0
-        while time.monotonic() < end:
+    def _start_scheduler(self):
+        for _ in range(3):  # a port that was free may be somebody's by the time it is taken
+            port = free_port()
+            self.address = f"tcp://127.0.0.1:{port}"
+            words = ("--host", "127.0.0.1", "--port", str(port), "--no-dashboard", "--no-show")
+            scheduler = self._start("scheduler", words, {})
+            if self._opens(port, scheduler):
+                return scheduler
+            scheduler.kill()
+            scheduler.wait()
+            self.started.clear()
+        log = (self.folder / "scheduler0.log").read_text()
+        raise AssertionError(f"the scheduler does not start: {log}")
+
+    @staticmethod
+    def _opens(port, scheduler):
+        end = time.monotonic() + 60.0
+        while time.monotonic() < end and scheduler.poll() is None:
             with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), 1):
-                return
+                return True
             time.sleep(0.05)
-        raise AssertionError("the scheduler does not start")
+        return False
 
     def wait_for(self, count):
         """Wait until this many workers have joined."""
