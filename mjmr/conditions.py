@@ -32,6 +32,7 @@ class Parameter:
         unit: SI unit, empty if none.
         kind: ``bool``, ``int``, ``float`` or ``str``; None takes the default's.
         least: Smallest number allowed; None for any.
+        most: Largest number allowed; None for any.
 
     Raises:
         InvalidInputError: The declaration contradicts itself.
@@ -44,6 +45,7 @@ class Parameter:
     unit: str = ""
     kind: type | None = None
     least: float | None = None
+    most: float | None = None
 
     def __post_init__(self):
         if not self.name.isidentifier() or self.name in _RESERVED:
@@ -72,11 +74,16 @@ class Parameter:
             InvalidInputError: Not of the declared kind, or not finite.
         """
         typed = self._typed(value)
-        if self.least is not None and not isinstance(typed, str) and typed < self.least:
+        if not isinstance(typed, str):
             unit = f" {self.unit}" if self.unit else ""
-            raise InvalidInputError(
-                f"{self.name} must be at least {self.least:g}{unit}; got {typed:g}{unit}"
-            )
+            for bound, word, beyond in (
+                (self.least, "least", self.least is not None and typed < self.least),
+                (self.most, "most", self.most is not None and typed > self.most),
+            ):
+                if beyond:
+                    raise InvalidInputError(
+                        f"{self.name} must be at {word} {bound:g}{unit}; got {typed:g}{unit}"
+                    )
         if self.values is not None and typed not in self.values:
             raise UnknownNameError(
                 f"value of {self.name}", format_value(typed), map(format_value, self.values)

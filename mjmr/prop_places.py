@@ -24,19 +24,17 @@ class PropPlaces:
         self._free, self._discs = np.flatnonzero(~discs), np.flatnonzero(discs)
         self._free_qpos = first[self._free, None] + np.arange(7)
         self._disc_qpos = first[self._discs, None] + np.arange(len(JOINTS))
-        self._bodies = np.array([model.body(name).id for name, _ in movers], dtype=np.int64)
+        self._n = len(movers)
 
     def poses(self, data: "mujoco.MjData") -> NDArray[np.float64]:
-        """Poses of the movers (k, 7): position, quaternion; a new array."""
-        ids = self._bodies
-        if not len(self._discs):
-            return np.concatenate([data.xpos[ids], data.xquat[ids]], axis=1)
-        # MuJoCo computes places of bodies when a step begins: after it they are a step old
-        discs = disc_poses(data.qpos[self._disc_qpos])
-        if not len(self._free):
-            return discs
-        poses = np.concatenate([data.xpos[ids], data.xquat[ids]], axis=1)
-        poses[self._discs] = discs
+        """Poses of the movers (k, 7): position, quaternion; a new array.
+
+        From the joints: MuJoCo computes places of bodies as a step begins, so that after it they
+        are a step old.
+        """
+        poses = np.empty((self._n, 7))
+        poses[self._free] = data.qpos[self._free_qpos]
+        poses[self._discs] = disc_poses(data.qpos[self._disc_qpos])
         return poses
 
     def place(self, data: "mujoco.MjData", poses: NDArray[np.float64]) -> None:

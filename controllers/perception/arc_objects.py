@@ -33,10 +33,6 @@ class Objects:
     gap: Array
     whole: NDArray[np.bool_]
 
-    def of(self, kind: int) -> NDArray[np.bool_]:
-        """Which of them are of a kind (n, k)."""
-        return self.kind == kind
-
 
 class ArcObjects:
     """Makes objects of columns: runs of one kind without jumps, each of a known radius.

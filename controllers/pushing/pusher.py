@@ -47,7 +47,9 @@ class Pusher:
         """
         self._fusion = Fusion(n, surroundings, ring_angles)
         self.recovery = recovery
-        machine = pusher_machine(parameters, share="tolerance" if recovery else "")
+        machine = pusher_machine(
+            parameters, radius=surroundings.robot_radius, share="tolerance" if recovery else ""
+        )
         self.behaviour = machine.start(n, rng)
         self._top = {"top_speed": top_speed, "top_turn": top_turn}
         self.percepts: Percepts = {}

@@ -156,6 +156,8 @@ class View:
         self.state_time = np.zeros(self.n) if state_time is None else state_time
         self._fields: dict[int, Array] = {}
         self._things: dict[str, Things] = {}
+        self._vectors: dict[str, Array] = {}
+        self._directions: dict[int | str, Array] = {}
 
     def things(self, name: str) -> Things:
         """What is perceived under a name; a vector counts as one point a robot.
@@ -178,15 +180,26 @@ class View:
         return found
 
     def vector(self, name: str) -> Array:
-        """The nearest thing's offset (n, 2) [m]; NaN where there is none."""
-        nearest = self.things(name)
-        nearest = nearest if nearest.offset.shape[1] == 1 else nearest.nearest()
-        return np.where(nearest.valid, nearest.offset[:, 0], np.nan)
+        """The nearest thing's offset (n, 2) [m]; NaN where there is none; not to be changed."""
+        found = self._vectors.get(name)
+        if found is None:
+            nearest = self.things(name)
+            nearest = nearest if nearest.offset.shape[1] == 1 else nearest.nearest()
+            found = np.where(nearest.valid, nearest.offset[:, 0], np.nan)
+            self._vectors[name] = found
+        return found
 
     def direction(self, of: "str | Schema") -> Array:
-        """Unit vectors (n, 2) towards a percept or along a schema; 0 where there is none."""
-        vector = self.vector(of) if isinstance(of, str) else self.field(of)
-        return unit(vector)
+        """Unit vectors (n, 2) towards a percept or along a schema; 0 where there is none.
+
+        Not to be changed.
+        """
+        key = of if isinstance(of, str) else id(of)
+        found = self._directions.get(key)
+        if found is None:
+            vector = self.vector(of) if isinstance(of, str) else self.field(of)
+            found = self._directions[key] = unit(vector)
+        return found
 
     def field(self, schema: Schema) -> Array:
         """A schema's vectors (n, 2) in this step; not to be changed."""

@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-import networkx as nx
 import numpy as np
 from numpy.typing import NDArray
 
@@ -105,6 +104,8 @@ class StateMachine:
         for source, when in pairs:
             if pairs.count((source, when)) > 1:
                 raise InvalidInputError(f"{source!r} has two transitions for {when!r}")
+        import networkx as nx  # a tenth of a second, for whoever declares a machine
+
         graph = nx.DiGraph([(t.source, t.target) for t in self.transitions])
         graph.add_nodes_from(self.states)
         reached = nx.descendants(graph, self.initial) | {self.initial}

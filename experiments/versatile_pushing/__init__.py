@@ -46,7 +46,7 @@ study = Study(
                 "wedged-anywhere",
             ),
         ),
-        Parameter("c", "cooperation, 0 to 1", 0.0, least=0.0),
+        Parameter("c", "cooperation, 0 to 1", 0.0, least=0.0, most=1.0),
         Parameter("p", "position: lateral offset allowed, in robot radii", 1.0, least=0.0),
         Parameter("b", "build flag: home's polarity is reversed", False),
         Parameter("weight", "w of the large disc: w + 1 robots can move it", 0, (0, 1, 2)),

@@ -10,6 +10,7 @@ from controllers.perception.arc_objects import MOVER, ROBOT, Objects
 from experiments.versatile_pushing.sight import ArcSight, CameraSight
 from experiments.versatile_pushing.tasks import make_pusher, take_in
 from experiments.versatile_pushing.worlds import PERIOD, RANGE, TASKS, build
+from mjmr.errors import InvalidInputError
 from mjmr.simulation import Simulation
 
 Array = NDArray[np.float64]
@@ -91,6 +92,11 @@ class _Found:
 
     def metrics(self) -> dict[str, float | int]:
         """The study's numbers."""
+        if not self.near:
+            raise InvalidInputError(
+                "nothing near was seen by both variants of vision; task=vision takes a duration of "
+                "5 s or more"
+            )
         total = np.sum(list(self.counts.values()), axis=0)
         bearing, away = np.array(self.bearing), np.array(self.range)
         return {

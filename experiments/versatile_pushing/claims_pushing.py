@@ -48,6 +48,10 @@ def claims_pushing() -> list[Claim]:
             "the same from rest and in contact; shortest",
         ),
         _claim(
+            "push-moved-from-rest-2m", "moved-from-rest", "way", Bound(">=", 2.0), "m",
+            "the same with the bound of the run-up; written when its values had been seen",
+        ),
+        _claim(
             "push-wedged", "wedged", "way", Bound("<=", 0.4), "m",
             "one robot 60, 67.5, 75 degrees off the normal of a weight of 1, 20 s; way of the "
             "disc, furthest: real of wheels that do not slip sideways",

@@ -12,6 +12,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from mjmr.errors import InvalidInputError
 from mjmr.group import Group
 from mjmr.robots.round_pusher import RoundPusher
 from mjmr.simulation import Simulation
@@ -55,6 +56,8 @@ def held(condition: Mapping[str, Any], seed: int) -> Metrics:
     as a share of what they can do, says that they did push all the time.
     """
     weight, heading = int(condition["weight"]), _heading(condition, seed)
+    if weight < 1:
+        raise InvalidInputError(f"task=held takes a weight of 1 or more; got {weight}")
     shift = _shift(seed)
     simulation, robots = _scene(condition, weight, friction_force(weight), heading, 0.02, shift)
     meter = _PushMeter(simulation, robots)

@@ -40,7 +40,7 @@ def pushing_grids(seeds: int, timesteps: Sequence[float] = TIMESTEPS) -> list[Gr
 QUICK = Size(
     "quick",
     grids=(
-        Grid(**FORAGING, map=(0, 1), c=(0.0, 1.0), duration=150.0, seeds=1),
+        Grid(**FORAGING, map=(0, 1), c=(0.0, 1.0), duration=LONG, seeds=1),
         Grid(**CONSTRUCTION, map=0, duration=LONG, seeds=1),
         Grid(**TRANSPORT, weight=1, robots=(2, 3), p=(0.0, 2.0, 4.0), duration=SHORT, seeds=2),
         Grid(**TRANSPORT, weight=1, robots=1, p=2.0, duration=SHORT, seeds=1),

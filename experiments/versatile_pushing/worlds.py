@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from experiments.versatile_pushing.pushing import friction_force
 from mjmr.disc import let_discs_sleep
+from mjmr.errors import InvalidInputError
 from mjmr.group import Group
 from mjmr.randomness import Streams
 from mjmr.robots.round_pusher import RoundPusher
@@ -206,10 +207,17 @@ def around(disc: Any, robots: int, rng: np.random.Generator) -> Array:
 
 
 def world(condition: Mapping[str, Any]) -> World:
-    """World of a condition, for ``mjmr mjcf``."""
-    task = condition["task"] if condition["task"] in TASKS else "transport"
+    """World of a condition, for ``mjmr mjcf``.
+
+    Raises:
+        InvalidInputError: A check, whose world exists in its trial only.
+    """
+    if condition["task"] not in TASKS:
+        raise InvalidInputError(
+            f"there is a world to write for task={', '.join(TASKS)}; got {condition['task']}"
+        )
     return build(
-        task,
+        condition["task"],
         robots=condition["robots"],
         weight=condition["weight"],
         map_seed=condition["map"],

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from mjmr.assets import model_path
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.geometry import Pinhole, rotation_matrix
+from mjmr.sensors.aim import aimed_angles
 from mjmr.sensors.base import Sensor, carrier_body
 
 if TYPE_CHECKING:
@@ -117,21 +118,7 @@ class PanTilt(Sensor):
             InvalidInputError: Another shape, NaN or infinity (names the robots), or no simulation.
         """
         self._in_simulation()
-        group = self._group
-        try:
-            angles = [
-                np.broadcast_to(np.asarray(a, dtype=np.float64), group.n) for a in (pan, tilt)
-            ]
-        except ValueError:
-            raise InvalidInputError(
-                f"{group.name}: pan and tilt have one angle a robot, shape ({group.n},), or one "
-                f"for all; got {np.shape(pan)} and {np.shape(tilt)}"
-            ) from None
-        aimed = np.column_stack(angles)
-        bad = np.flatnonzero(~np.isfinite(aimed).all(axis=1))
-        if len(bad):
-            names = ", ".join(group.names[i] for i in bad)
-            raise InvalidInputError(f"pan and tilt must be finite; they are not for {names}")
+        aimed = aimed_angles(self._group, pan=pan, tilt=tilt)
         within = np.clip(aimed, self._low, self._high)
         self.clamped += (within != aimed).any(axis=1)
         self._goal = within

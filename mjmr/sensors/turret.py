@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.geometry import wrap_angle
 from mjmr.jit import njit
+from mjmr.sensors.aim import aimed_angles
 from mjmr.sensors.base import Sensor
 
 if TYPE_CHECKING:
@@ -71,19 +72,7 @@ class Turret(Sensor):
             InvalidInputError: Another shape, NaN or infinity (names the robots), or no simulation.
         """
         self._in_simulation()
-        group = self._group
-        aimed = np.asarray(pan, dtype=np.float64)
-        if aimed.shape != (group.n,):
-            if aimed.ndim or aimed.size != 1:
-                raise InvalidInputError(
-                    f"{group.name}: a pan has one angle a robot, shape ({group.n},), or one for "
-                    f"all; got {aimed.shape}"
-                )
-            aimed = np.full(group.n, float(aimed))
-        if not np.isfinite(aimed).all():
-            names = ", ".join(group.names[i] for i in np.flatnonzero(~np.isfinite(aimed)))
-            raise InvalidInputError(f"a pan must be finite; it is not for {names}")
-        self._goal = wrap_angle(aimed)
+        self._goal = wrap_angle(aimed_angles(self._group, pan=pan)[:, 0])
 
     @property
     def aimed(self) -> Array:
