@@ -42,6 +42,7 @@ def plots(table: Table, folder: Path) -> list[Path]:
 
 def tracks(path: Path, seed: int = 0) -> Path:
     """Scout's and worker's track in each of the four mazes, planar, with their times."""
+    from controllers.scouting import LOOP
     from experiments.scout_workers import study
     from experiments.scout_workers.mazes import maze
     from experiments.scout_workers.run import run
@@ -54,7 +55,7 @@ def tracks(path: Path, seed: int = 0) -> Path:
             parts = build(study.condition(maze=name), seed)
             out = run(*parts, keep_trails=True)
             trail = np.array(out.trails) + [k * (place.size + 0.3), 0.0]
-            until = int(np.nan_to_num(out.found[0] / 0.5, nan=len(trail))) + 1
+            until = int(np.nan_to_num(out.found[0] / LOOP, nan=len(trail))) + 1
             axes.plot(*trail[:until, 0].T, color="0.55", linewidth=0.6)
             axes.plot(*trail[:, 1].T, color="tab:red", linewidth=1.4)
             x = k * (place.size + 0.3)
