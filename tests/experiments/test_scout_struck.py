@@ -69,7 +69,13 @@ def test_what_dead_detectors_hide_is_counted(kind, dead):
     """A robot turns between two blocks 0.3 m apart."""
     blocks = np.array([[0.3, 0.3, 1.1, 1.1], [1.4, 0.3, 2.2, 1.1]])
     setting = Setting(
-        n=1, seed=1000, size=2.5, blocks=blocks, nest=[1.25, 0.7], goal=[2.2, 2.2], blind=[dead]
+        n=1,
+        seed=1000,
+        size=2.5,
+        blocks=blocks,
+        nest=np.array([1.25, 0.7]),
+        goal=np.array([2.2, 2.2]),
+        blind=np.array([dead]),
     )
     where = kind(setting)
     assert where.put_down(0)
