@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from experiments.scout_workers.plots_spread import spreads
 from experiments.scout_workers.sizes import CHOSEN
 from mjmr import statistics
 from mjmr.plot import figure, interval_line
@@ -37,7 +38,7 @@ def plots(table: Table, folder: Path) -> list[Path]:
         rows = table.where(**wanted)
         if rows.finished and len(rows.distinct(axis)) > 1:
             written.append(_shares(rows, folder / f"{name}.svg", axis, label, by))
-    return written
+    return [*written, *spreads(table, pairs, folder)]
 
 
 def tracks(path: Path, seed: int = 0) -> Path:
