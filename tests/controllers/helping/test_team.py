@@ -7,6 +7,7 @@ from controllers.helping import (
     CHAIN,
     GOAL,
     LITERAL,
+    OFFER,
     PLAN,
     PLANNERS,
     RAYS,
@@ -18,7 +19,8 @@ from controllers.helping import (
     patrol,
     point_team,
 )
-from controllers.helping.visibility import cast, move, sees
+from controllers.helping.visibility import Walls, cast, move, sees
+from mjmr.office import Office
 from tests.controllers.helping.offices import inside, place, walls
 
 _CLASSES = {"avoid-past": AvoidPast, "visbug": VisBug, "potential-field": PotentialField}
@@ -118,6 +120,34 @@ def test_the_class_does_what_the_compiled_loop_does(planner, reading):
             visited.add(mode)
     assert {PLAN, GOAL} <= visited
     assert reached.any()
+
+
+def test_a_ghost_whose_goal_a_corner_hides_from_half_a_millimetre_is_reached():
+    # a wall from the south rim: the line from ghost to goal clears its end, as sight has it, by
+    # less than 0.1 mm, and R1's last full step ends 0.5 mm short of the ghost, behind the corner
+    rim = [[0, 0, 10, 0], [10, 0, 10, 6], [10, 6, 0, 6], [0, 6, 0, 0]]
+    size, none = np.array([10.0, 6.0]), np.empty((0, 4))
+    office = Office("corner", size, np.array([*rim, [5, 0, 5, 3.0]]), none, none, none, ())
+    path, links = office.edges(0.236)
+    after, before = np.ascontiguousarray(links.T)
+    w = Walls(*(office.edges(c)[0] for c in (0.22, 0.19, 0.235)), path, after, before)
+    ghost, goal = np.array([4.0, 2.4401]), np.array([6.0, 4.4401])
+    start = ghost - [0.0, 0.1505]
+    settings, rng = Settings(), np.random.default_rng(0)
+    assert sees(*ghost, *goal, settings.sight, w.sight)
+    assert not sees(*ghost - [0.0, 0.0005], *goal, settings.sight, w.sight)
+
+    crew = point_team.team(start[None], np.zeros((1, 3)), [-1], LITERAL, size, settings)
+    point_team.begin(crew, *goal)
+    crew.offered.active[0], crew.offered.length[0], crew.offered.taken[0] = True, 1, 1
+    crew.offered.points[0, 0] = ghost
+    route, modes = np.empty((0, 2)), []
+    for _ in range(4):
+        mode, x, y = point_team.before(crew, w, settings, point_team.Options(), rng)
+        point_team.after(crew, mode, *point_team.towards(crew, x, y, settings), w, settings, route)
+        modes.append(mode)
+    assert modes == [OFFER, OFFER, GOAL, GOAL]
+    assert crew.offered.vain[0] == 0
 
 
 @pytest.mark.parametrize("err_max", [0.0, 0.4])
