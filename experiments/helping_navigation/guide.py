@@ -55,7 +55,7 @@ class Guide:
     def new_goal(self) -> None:
         """Start afresh."""
         self._by_rays.begin()
-        self._line = None
+        self._forget_line()
 
     def pause(self, pose: Array) -> None:
         """Something else leads at this step: VisBug draws a new M-line when it is asked again.
@@ -64,7 +64,10 @@ class Guide:
             pose: Own (3,) in F_i.
         """
         self._by_rays.pause(pose[:2])
-        self._line = None
+        self._forget_line()
+
+    def _forget_line(self) -> None:
+        self._line, self._unseen = None, 0
 
     def look(self, pose: Array, ranges: Array, angles: Array) -> None:
         """Remember what one sees.
@@ -118,7 +121,7 @@ class Guide:
         unseen = not sees(at[0], at[1], tx, ty, self._settings.vision, self._sight_edges)
         self._unseen = self._unseen + 1 if unseen else 0
         if self._unseen > _PATIENCE:
-            self._line, self._unseen = None, 0
+            self._forget_line()
         return self._at
 
     def _progress(self) -> float:
