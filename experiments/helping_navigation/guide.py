@@ -24,9 +24,6 @@ class Guide:
     what it saw: the walls within its vision, as scans entered them so far. Bug2's path along them
     is planned again whenever they grow, along the same M-line, and the target stays where it was
     on it.
-
-    Attributes:
-        unreachable: How often Bug2 found the goal walled in, by what the map had then.
     """
 
     def __init__(self, planner: str, settings: Settings, size: Array, own: Any = None):
@@ -50,7 +47,6 @@ class Guide:
         self._version = -1
         self._line: tuple[Array, Array] | None = None
         self._at, self._unseen = np.zeros(2), 0
-        self.unreachable = 0
 
     def new_goal(self) -> None:
         """Start afresh."""
@@ -112,7 +108,6 @@ class Guide:
             (x, y), (gx, gy) = self._line
             kept = self._progress()
             visbug.plan(self._bug, x, y, gx, gy, edges, after, before, self._settings.left)
-            self.unreachable += int(self._bug.at[2])
             if not fresh:
                 self._resume(kept)
         tx, ty = visbug.target(self._bug, at[0], at[1], self._settings.vision, self._sight_edges)

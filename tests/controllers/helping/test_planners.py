@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from controllers.helping import RAYS, AvoidPast, HelpingTeam, PotentialField, Settings, VisBug
+from controllers.helping import RAYS, AvoidPast, PotentialField, Settings, VisBug
 from controllers.helping.patrol import advance, length, place
 from controllers.schemas import AvoidPast as AvoidPastSchema
 from controllers.schemas.visits import past, visit
-from mjmr.errors import InvalidInputError, UnknownNameError
+from mjmr.errors import InvalidInputError
 
 
 def test_the_potential_field_is_unit_and_pushed_off_walls():
@@ -64,13 +64,6 @@ def test_the_last_bits_of_a_place_do_not_decide_its_cell():
 def test_visbug_wants_walls():
     with pytest.raises(InvalidInputError, match="walls"):
         VisBug(Settings())
-
-
-def test_unknown_reading_and_no_robots_are_refused():
-    with pytest.raises(UnknownNameError, match="chain"):
-        HelpingTeam(2, "letter", PotentialField(Settings()))
-    with pytest.raises(InvalidInputError, match="at least one"):
-        HelpingTeam(0, "chain", PotentialField(Settings()))
 
 
 def test_a_patrol_goes_its_route_at_one_pace():

@@ -1,40 +1,12 @@
-"""The team for callers that sense by themselves, against the compiled point robots."""
+"""The compiled point robots: what they sense, and where their last steps end."""
 
 import numpy as np
 import pytest
 
-from controllers.helping import (
-    CHAIN,
-    GOAL,
-    LITERAL,
-    OFFER,
-    PLAN,
-    PLANNERS,
-    RAYS,
-    AvoidPast,
-    HelpingTeam,
-    PotentialField,
-    Settings,
-    VisBug,
-    patrol,
-    point_team,
-)
-from controllers.helping.visibility import Walls, cast, move, sees
+from controllers.helping import GOAL, LITERAL, OFFER, Settings, patrol, point_team
+from controllers.helping.visibility import Walls, sees
 from mjmr.office import Office
 from tests.controllers.helping.offices import inside, place, walls
-
-_CLASSES = {"avoid-past": AvoidPast, "visbug": VisBug, "potential-field": PotentialField}
-
-
-def _into(frame, point):
-    c, s = np.cos(frame[2]), np.sin(frame[2])
-    dx, dy = point[0] - frame[0], point[1] - frame[1]
-    return np.array([c * dx + s * dy, -s * dx + c * dy])
-
-
-def _out_of(frame, point):
-    c, s = np.cos(frame[2]), np.sin(frame[2])
-    return frame[:2] + [c * point[0] - s * point[1], s * point[0] + c * point[1]]
 
 
 def _start(n):
@@ -49,77 +21,6 @@ def _start(n):
     frames = np.zeros((n, 3))
     frames[1:] = rng.uniform([-9, -9, -3], [9, 9, 3], (n - 1, 3))
     return office, points[1:], np.array(at), np.array(following), frames
-
-
-@pytest.mark.parametrize("reading", ["literal", "chain"])
-@pytest.mark.parametrize("planner", list(PLANNERS))
-def test_the_class_does_what_the_compiled_loop_does(planner, reading):
-    n, settings, w = 3, Settings(), walls()
-    office, goals, at, following, frames = _start(n)
-    state = planner == "potential-field"
-    crew = point_team.team(
-        at, frames, following, LITERAL if reading == "literal" else CHAIN, office.size, settings
-    )
-    steps, reached = np.zeros(3, dtype=np.int64), np.zeros(3, dtype=bool)
-    trace = np.zeros((3000, n + 1, 2))
-    options = point_team.Options(shares_state=state)
-    rng, route = np.random.default_rng(0), office.routes[0]
-    point_team.run(
-        crew,
-        PLANNERS[planner],
-        goals,
-        1000,
-        w,
-        settings,
-        options,
-        route,
-        rng,
-        steps,
-        reached,
-        trace,
-    )
-
-    team = HelpingTeam(
-        n, reading, _CLASSES[planner](settings, w, office.size), settings, shares_state=state
-    )
-    now, ranges, visited = 0, np.zeros(32), set()
-    for goal, count in zip(goals, steps, strict=True):
-        team.new_goal(goal)
-        mode = PLAN
-        for _ in range(count):
-            own = np.array([_into(f, p) for f, p in zip(frames, at, strict=True)])
-            heard = np.array([[i != j and sees(*at[i], *at[j], 8.0, w.sight) for j in range(n)]
-                              for i in range(n)])  # fmt: skip
-            away = at[None] - at[:, None]
-            bearing = np.arctan2(away[..., 1], away[..., 0]) - frames[:, None, 2]
-            team.share(own, heard, np.hypot(away[..., 0], away[..., 1]), bearing)
-
-            def looks(i, point, edges):
-                if np.isnan(point[0]):
-                    return False
-                return sees(*at[i], *_out_of(frames[i], point), 8.0, edges)
-
-            ask = team.points()
-            team.reflect(
-                [looks(i, ask.goal[i], w.sight) for i in range(n)],
-                [looks(i, ask.ghost[i], w.sight) for i in range(n)],
-            )
-            sees_goal = looks(0, goal, w.kept if mode == GOAL else w.sight)
-            mode, target = team.decide(sees_goal, looks(0, team.points().next, w.sight))
-            np.testing.assert_allclose(at[0], trace[now, 0], atol=1e-6)
-            assert mode == trace[now, n, 0]
-            cast(*at[0], RAYS, 3.0, w.motion, ranges)
-            vx, vy = team.steer(mode, target, ranges)
-            size = max(np.hypot(vx, vy), 1e-12)  # it may wait
-            at[0] = move(*at[0], vx / size, vy / size, min(size, 1.0) * 0.15, w.motion,
-                         mode != PLAN or planner == "visbug")  # fmt: skip
-            for i in range(1, n):
-                x, y, following[i] = patrol.advance(*at[i], following[i], route, 0.15)
-                at[i] = x, y
-            now += 1
-            visited.add(mode)
-    assert {PLAN, GOAL} <= visited
-    assert reached.any()
 
 
 def test_a_ghost_whose_goal_a_corner_hides_from_half_a_millimetre_is_reached():
