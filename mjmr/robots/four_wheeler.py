@@ -1,4 +1,4 @@
-"""FourWheeler: a skid-steered four-wheel base, 0.50 m long, 10 kg (assets/four_wheeler/README.md)."""
+"""FourWheeler: a four-wheel skid-steer base, 0.50 m long, 10 kg (assets/four_wheeler/README.md)."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -38,9 +38,23 @@ class FourWheeler(Unicycle):
     effective_track = 0.64
     disc_radius = 0.09
 
-    def __init__(self, *, acceleration: float = 1.0, turn_acceleration: float = 4.0):
-        """Set what the base's firmware allows; see :class:`mjmr.robots.unicycle.Unicycle`."""
+    def __init__(
+        self,
+        *,
+        acceleration: float = 1.0,
+        turn_acceleration: float = 4.0,
+        calibrated: bool = True,
+    ):
+        """Set what the base's firmware allows; see :class:`mjmr.robots.unicycle.Unicycle`.
+
+        Args:
+            acceleration: Bound of the forward speed's changes [m/s^2].
+            turn_acceleration: Bound of the yaw rate's changes [rad/s^2].
+            calibrated: Whether the servos reckon with the scrub of the tyres; else with the
+                track itself, as one would who has only measured the robot.
+        """
         super().__init__(acceleration=acceleration, turn_acceleration=turn_acceleration)
+        self.effective_track = type(self).effective_track if calibrated else self.track
 
     def bind(self, model: "mujoco.MjModel", prefixes: Sequence[str]) -> Drive:
         """Drive of the robots attached under ``prefixes``."""

@@ -19,12 +19,13 @@ _INTEGRAL = 20.0  # gain of the controller's integral part [1/s]
 class SkidSteerDrive(DiffDrive):
     """Ramped velocity servos, one a side, whose speeds a controller closes as real firmware does.
 
-    Commands are (forward, turn). Wheels named as ``WHEELS`` have the servos; the model gears further
-    ones of a side to them, by default those in front of and behind a middle one. In a turn the wheels scrub: what that takes from the
-    motors would slow the sides by about a tenth, so an integral part at every ``frame`` makes the
-    wheels' *encoders* follow the command. Speeds of the sides come from a turn by the effective
-    track, and both from rims by the rolling radius, as of firmware calibrated on the floor at a
-    working turn rate: what the robot then does is up to the contacts.
+    Commands are (forward, turn). Wheels named as ``WHEELS`` have the servos; the model gears
+    further ones of a side to them, by default those in front of and behind a middle one. In a turn
+    the wheels scrub: what that takes from the motors would slow the sides by about a tenth, so an
+    integral part at every ``frame`` makes the wheels' *encoders* follow the command. Speeds of the
+    sides come from a turn by the effective track, and both from rims by the rolling radius, as of
+    firmware calibrated on the floor at a working turn rate: what the robot then does is up to the
+    contacts.
 
     Attributes:
         frame: Between two corrections [s]; the Koala's own.
