@@ -10,6 +10,8 @@ from controllers.safety.filters import Barrier, SafetyConfig
 
 Array = NDArray[np.float64]
 MARGIN = 0.025  # m: two robots' discs are kept 5 cm apart, whatever the search's margin is
+# gamma in units of deceleration / top speed; above 1 robots come nearer at speed, and brake late
+PACE = 2.0
 
 
 class BarrierNavigator:
@@ -39,7 +41,7 @@ class BarrierNavigator:
         self._inner = Navigator(bounds, boxes, n, dataclasses.replace(config, search=False), rng)
         safety = SafetyConfig(
             radius=config.radius, limits=config.limits, period=config.period, margin=MARGIN,
-            rate=config.limits.deceleration / config.limits.max_speed,
+            rate=PACE * config.limits.deceleration / config.limits.max_speed,
         )  # fmt: skip
         self.filter = Barrier(np.asarray(bounds), boxes, n, safety, rng)
         self.waypoints, self.sampled = self._inner.waypoints, np.zeros(n, dtype=bool)

@@ -32,7 +32,7 @@ class NearestPoints:
         self.count = 4 + len(prepared)
 
     def of(self, position: Array) -> Array:
-        """Nearest points (n, count, 2) [m] to positions (n, 2); inside a box the position itself."""
+        """Nearest points (n, count, 2) [m] to positions (n, 2); inside a box, the position."""
         n = len(position)
         points = np.empty((n, self.count, 2))
         points[:, :4] = position[:, None]

@@ -62,6 +62,13 @@ study = Study(
             least=0.0,
         ),
         Parameter(
+            "pace",
+            "the barrier's gamma, in units of deceleration / top speed: at 1 a gap is used up no "
+            "faster than bodies can brake from top speed",
+            1.0,
+            least=0.01,
+        ),
+        Parameter(
             "sigma_mm", "deviation of reported positions along x and y", 0.0, unit="mm", least=0.0
         ),
         Parameter(

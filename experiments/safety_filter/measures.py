@@ -69,7 +69,8 @@ def measure(positions: Array, period: float, distance: float, home: Any) -> dict
         home: Who is at its goal at each instant (k, n), or None where goals go on and on.
 
     Returns:
-        ``spare_mm``: least distance of two points less ``distance``; ``deadlock_s``: time in which
+        ``spare_mm``: least distance of two points less ``distance``, which is ``discs_meet_mm``;
+        ``deadlock_s``: time in which
         nobody moves and somebody is not home; ``waiting_share``: robots' time spent standing and
         not home; ``home``: robots home at the end; ``all_home_s``: when all were for the first
         time, None if never; ``least_cm``: series, every 0.5 s.
@@ -83,6 +84,7 @@ def measure(positions: Array, period: float, distance: float, home: Any) -> dict
     until = len(still) if first is None else first + 1
     step = round(SERIES / period)
     return {
+        "discs_meet_mm": 1e3 * distance,
         "spare_mm": float(1e3 * (near.min() - distance)),
         "deadlock_s": float((still.all(axis=1) & ~everybody).sum() * period),
         "waiting_share": float(waiting[:until].mean()),

@@ -11,7 +11,7 @@ from controllers.motion import Limits
 from controllers.safety import SafetyConfig
 from mjmr.group import Group
 from mjmr.randomness import Streams
-from mjmr.robots.pioneer2dx import Pioneer2DX as FourWheeler
+from mjmr.robots.four_wheeler import FourWheeler
 from mjmr.sensors.localizer import Localizer
 from mjmr.world import World
 
@@ -66,7 +66,7 @@ def safety(robots: Group, condition: Mapping[str, Any]) -> SafetyConfig:
         limits=limits,
         period=PERIOD,
         margin=condition["margin_mm"] / 1000.0,
-        rate=limits.deceleration / limits.max_speed,
+        rate=condition["pace"] * limits.deceleration / limits.max_speed,
         samples=100,
     )
 

@@ -24,6 +24,7 @@ from mjmr.parts import Parts
 from mjmr.simulation import Simulation
 
 SWAPS = ("swap", "symmetric")
+ROBOT_CLEARANCE = 0.03  # m, between two bodies in plans, besides the margins
 Metrics = dict[str, Any]
 
 
@@ -101,11 +102,14 @@ def _crossing(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
     limits, radius = Limits(), robots.platform.radius
     safety = SafetyConfig(
         radius=radius, limits=limits, period=FIELD_PERIOD, margin=condition["margin_mm"] / 1000.0,
-        rate=limits.deceleration / limits.max_speed, samples=scene.samples,
+        rate=condition["pace"] * limits.deceleration / limits.max_speed, samples=scene.samples,
     )  # fmt: skip
     config = NavigatorConfig(
         radius=radius, limits=limits, period=FIELD_PERIOD, search=False,
-        plan_around_robots=scene.sees_robots, box_clearance=BOX_CLEARANCE["planar"],
+        plan_around_robots=scene.sees_robots,
+        # plans that lead through what the filter keeps clear would be braked all the way
+        box_clearance=safety.margin + BOX_CLEARANCE["planar"],
+        robot_clearance=2 * safety.margin + ROBOT_CLEARANCE,
     )  # fmt: skip
     rng = simulation.rng
     planner = Navigator(world.bounds, world.boxes, robots.n, config, rng("navigator"))
