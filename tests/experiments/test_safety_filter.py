@@ -29,7 +29,7 @@ def test_four_wheels_swap_through_the_barrier_and_hit_each_other_without():
     assert through["all_home_s"] < 25
     assert through["spare_mm"] >= -1
     assert through["right_ticks"] > 0
-    without = run(robots=4, duration=10.0, method="none", right=False)
+    without = run(robots=4, duration=5.0, method="none", right=False)
     assert without["contacts"] > 0
     assert without["spare_mm"] < -300
     assert without["right_ticks"] == without["infeasible_ticks"] == 0
