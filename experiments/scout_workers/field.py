@@ -109,12 +109,14 @@ class Tally(NamedTuple):
         bumps: Loops in which a robot's bumper was pressed (n,).
         place: Where each robot is, or was when it was taken away (n, 2) [m].
         groups: Read while a carrier was there, accepted, dropped, accepted though not sent so.
+        hidden: Loops in which a dead detector of a robot had something to be tripped by (n,).
     """
 
     way: Array
     bumps: NDArray[np.int64]
     place: Array
     groups: tuple[int, int, int, int]
+    hidden: NDArray[np.int64]
 
 
 class Field(Protocol):

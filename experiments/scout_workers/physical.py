@@ -79,6 +79,7 @@ class PhysicalField:
         self._alive = np.ones(n, dtype=bool)
         self._blind = setting.blind
         self._way, self._bumps = np.zeros(n), np.zeros(n, dtype=np.int64)
+        self._hidden = np.zeros(n, dtype=np.int64)
         self.touches = np.zeros(n, dtype=np.int64)
         self._place = self._yard[:, :2].copy()
         self._owners = self._rims()
@@ -124,7 +125,9 @@ class PhysicalField:
         bumped = self._bumper.read()
         bump = (bumped[:, [1, 5]] | bumped[:, [0]]) & there[:, None]
         self._bumps += bump.any(axis=1)
-        ir = self._proximity.read() & (there & ~self._blind)[:, None]
+        ir = self._proximity.read() & there[:, None]
+        self._hidden += self._blind & ir.any(axis=1)
+        ir[self._blind] = False
         heading = np.where(there, self._compass.read(), np.nan)
         return Senses(heading, ir, bump, self._patch.read()[:, 0] & there)
 
@@ -165,7 +168,7 @@ class PhysicalField:
         read, accepted, dropped, undetected = (int(count.sum()) for count in groups)
         return Tally(
             self._way.copy(), self._bumps.copy(), self._place.copy(),
-            (read, accepted, dropped, undetected),
+            (read, accepted, dropped, undetected), self._hidden.copy(),
         )  # fmt: skip
 
     def _lift(self, robot: int, pose: Array) -> None:

@@ -58,6 +58,7 @@ class PlanarField:
         self._channel = ByteChannel(n, setting.timing, streams.sequence("radio"))
         self._codec = setting.codec
         self._way, self._bumps = np.zeros(n), np.zeros(n, dtype=np.int64)
+        self._hidden = np.zeros(n, dtype=np.int64)
         self._bump = np.zeros((n, 2), dtype=bool)
         self._groups = np.zeros(4, dtype=np.int64)
 
@@ -104,6 +105,7 @@ class PlanarField:
             FAN,
             ir,
         )
+        self._hidden += self._blind & ir.any(axis=1)
         ir[self._blind] = False
         bump = self._bump.copy()
         self._bump[:] = False
@@ -142,5 +144,5 @@ class PlanarField:
         read, accepted, dropped, undetected = (int(v) for v in self._groups)
         return Tally(
             self._way.copy(), self._bumps.copy(), self.pose[:, :2].copy(),
-            (read, accepted, dropped, undetected),
+            (read, accepted, dropped, undetected), self._hidden.copy(),
         )  # fmt: skip

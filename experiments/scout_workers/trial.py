@@ -102,6 +102,7 @@ def _run(given: Given, seed: int) -> tuple[Outcome, Metrics]:
         "groups_accepted": accepted,
         "groups_dropped": dropped,
         "groups_undetected": undetected,
+        "hidden": int(out.tally.hidden.sum()),
         "left": int(np.isfinite(out.left[1:]).sum()),
         "ended_s": out.ended,
         "wall_real_time": out.ended / max(time.process_time() - start, 1e-9),

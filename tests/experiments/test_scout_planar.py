@@ -197,6 +197,7 @@ def test_nobody_leaves_when_the_scout_dies_or_sends_rubbish():
         assert np.isnan(out.left[1])
         assert not team.records.known[1]
         assert out.ended >= 60.0
+        assert out.tally is not None
         assert out.tally.groups[1] == 0
         assert (out.tally.groups[2] > 0) == (failure == "bad-checksum")
 
