@@ -43,6 +43,7 @@ _WHERE = {
     "Fault": "mjmr.faults",
     "FloorPatch": "mjmr.sensors.floor_patch",
     "ForceTorque": "mjmr.sensors.force_torque",
+    "FourWheeler": "mjmr.robots.four_wheeler",
     "Group": "mjmr.group",
     "IMU": "mjmr.sensors.imu",
     "InfraredProximity": "mjmr.sensors.proximity",

@@ -78,6 +78,25 @@ def test_the_script_on_cameras_prints_what_it_says(tmp_path):
 
 
 @pytest.mark.slow
+def test_the_three_lines_of_the_safety_filter_print_what_they_say(tmp_path):
+    page = ROOT / "docs" / "safety-filter.md"
+    write_files(page, tmp_path)
+    done = run([sys.executable, "three_lines.py"], tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == blocks(page, "text")[0]
+
+
+@pytest.mark.slow
+def test_the_barrier_takes_other_studies_roles_and_another_filter_takes_its(tmp_path):
+    page = ROOT / "docs" / "safety-filter.md"
+    write_files(page, tmp_path)
+    for shell in blocks(page, "sh"):
+        run_shell(shell, tmp_path)
+    folders = {p.name for p in (tmp_path / "renders").glob("*/*")}
+    assert folders == {"quick+navigator=BarrierNavigator", "quick", "quick+filter=Timid"}
+
+
+@pytest.mark.slow
 def test_the_page_on_adding_a_system_runs(tmp_path):
     page = ROOT / "docs" / "add-a-system.md"
     write_files(page, tmp_path)

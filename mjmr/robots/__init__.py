@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from mjmr.errors import UnknownNameError
 from mjmr.robots.aibo_ers7 import AiboERS7
+from mjmr.robots.four_wheeler import FourWheeler
 from mjmr.robots.koala import Koala
 from mjmr.robots.nims import Nims
 from mjmr.robots.pioneer2dx import Pioneer2DX
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
 PLATFORMS = {
     "aibo_ers7": "mjmr.robots.aibo_ers7:AiboERS7",
+    "four_wheeler": "mjmr.robots.four_wheeler:FourWheeler",
     "koala": "mjmr.robots.koala:Koala",
     "nims": "mjmr.robots.nims:Nims",
     "pioneer2dx": "mjmr.robots.pioneer2dx:Pioneer2DX",
@@ -29,6 +31,7 @@ PLATFORMS = {
 __all__ = [
     "PLATFORMS",
     "AiboERS7",
+    "FourWheeler",
     "Koala",
     "Nims",
     "Pioneer2DX",

@@ -1,4 +1,4 @@
-"""The skid-steer drive: a free body on three wheels a side, geared together, one motor a side."""
+"""The skid-steer drive: a free body on several wheels a side, geared together, one motor a side."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -19,12 +19,13 @@ _INTEGRAL = 20.0  # gain of the controller's integral part [1/s]
 class SkidSteerDrive(DiffDrive):
     """Ramped velocity servos, one a side, whose speeds a controller closes as real firmware does.
 
-    Commands are (forward, turn). Wheels named as ``WHEELS`` are in the middle of a side; the model
-    gears those named as ``GEARED`` to them. In a turn the wheels scrub: what that takes from the
-    motors would slow the sides by about a tenth, so an integral part at every ``frame`` makes the
-    wheels' *encoders* follow the command. Speeds of the sides come from a turn by the effective
-    track, and both from rims by the rolling radius, as of firmware calibrated on the floor at a
-    working turn rate: what the robot then does is up to the contacts.
+    Commands are (forward, turn). Wheels named as ``WHEELS`` have the servos; the model gears
+    further ones of a side to them, by default those in front of and behind a middle one. In a turn
+    the wheels scrub: what that takes from the motors would slow the sides by about a tenth, so an
+    integral part at every ``frame`` makes the wheels' *encoders* follow the command. Speeds of the
+    sides come from a turn by the effective track, and both from rims by the rolling radius, as of
+    firmware calibrated on the floor at a working turn rate: what the robot then does is up to the
+    contacts.
 
     Attributes:
         frame: Between two corrections [s]; the Koala's own.
@@ -39,12 +40,13 @@ class SkidSteerDrive(DiffDrive):
         *,
         rolling_radius: float,
         effective_track: float,
+        geared: Sequence[Sequence[str]] = GEARED,
     ):
         """Look up every index once; see :class:`mjmr.robots.diff_drive.DiffDrive`."""
         super().__init__(
             model,
             prefixes,
-            geared=GEARED,
+            geared=geared,
             rolling_radius=rolling_radius,
             effective_track=effective_track,
         )
