@@ -45,8 +45,13 @@ _SAMPLES = 1.0  # s, between what is kept for plots
 class Team:
     """Robots with what they sense and say, their controller, and what is measured of them."""
 
-    def __init__(self, condition: Mapping[str, Any], seed: int):
+    def __init__(self, condition: Mapping[str, Any], seed: int, cameras: bool = False):
         """Build the world of a condition and put the robots into it.
+
+        Args:
+            condition: See the study's parameters.
+            seed: Of the trial.
+            cameras: Whether there are cameras besides rays, :attr:`cameras`, which nobody uses.
 
         Raises:
             InvalidInputError: Graphs that never meet Assumption 4.2, and nobody asked for them.
@@ -67,11 +72,12 @@ class Team:
         self.robots = add_team(world, poses, calibrated=calibrated, masts=not self.many)
         cone = math.radians(condition["cone_deg"])
         self.eyes: Any = None
+        self.cameras: Any = Eyes(self.robots, cone) if cameras else None
         if self.sighted:
             self.robots.mount(Compass(rate=RATE))
             camera = condition["sight"] == "camera"
             self.eyes = Eyes(self.robots, cone) if camera else mount_rays(world, cone)
-        if not self.sighted or condition["avoid"] == "barrier":
+        if not self.sighted or condition["avoid"] != "none":
             self.robots.mount(Localizer(rate=RATE, position_noise=condition["noise"]))
         self._add_fault(condition["fault"])
         self.simulation = Simulation(
@@ -81,7 +87,7 @@ class Team:
         if not self.sighted:
             self.radio = Radio(self.simulation, latency=condition["delay"], loss=condition["loss"])
         self.barrier = None
-        if condition["avoid"] == "barrier":
+        if condition["avoid"] != "none":
             # hands this far apart leave the middles a diameter and the margin apart
             distance = 2 * FourWheeler.radius + 2 * HAND + 0.05
             self.barrier = BarrierFilter(self.n, BarrierConfig(distance=distance, top_speed=1.0))
@@ -96,12 +102,13 @@ class Team:
         while left > 1e-9:
             span = min(left, 1.0) if until_agreed else left
             for time in self.simulation.ticks(span):
-                self._tick(time)
+                self.tick(time)
             left -= span
             if until_agreed and self.log.spread_now <= _NEAR:
                 return
 
-    def _tick(self, time: float) -> None:
+    def tick(self, time: float) -> None:
+        """Sense and drive at ``time`` [s]; inside of the simulation's ticks."""
         robots = self.robots
         if self.sighted:
             command, heard = self._by_sight(time)
@@ -155,7 +162,9 @@ class Team:
     def _places(self, condition: Mapping[str, Any], streams: Streams) -> tuple[Array, Array, Any]:
         """Outputs at the start (n, 2), offsets (n, 2), bounds."""
         if not self.many:
-            angle = 2 * np.pi * np.arange(3) / 3
+            # outward: everybody's place is on the side it comes from; crossed: 1 and 2 pass by
+            order = [1, 0, 2] if condition["places"] == "crossed" else [0, 1, 2]
+            angle = 2 * np.pi * np.array(order) / 3
             radius = condition["side"] / math.sqrt(3)
             return START, radius * np.column_stack([np.cos(angle), np.sin(angle)]), _BOUNDS
         n = condition["robots"]
@@ -175,10 +184,10 @@ class Team:
 
     def _add_fault(self, fault: str) -> None:
         if fault == "follower-dies":
-            self.robots.faults.add(Fault("dead", 2, FAULT_AT))
+            self.robots.faults.add(Fault(kind="dead", robot=2, start=FAULT_AT))
         elif fault == "leader-freezes":
             # stands and goes on talking
-            self.robots.faults.add(Fault("stopped", 0, FAULT_AT))
+            self.robots.faults.add(Fault(kind="stopped", robot=0, start=FAULT_AT))
 
 
 class Sight:
