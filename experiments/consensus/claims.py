@@ -1,7 +1,7 @@
 """What is claimed of consensus: the theory here, robots in :mod:`.claims_physical`.
 
-The paper reports one figure without numbers; bounds are ours, those of the reproduction's
-specification. ``published`` names numbers that were computed from the restored system.
+The paper reports one figure without numbers. Bounds are ours, those of the reproduction's
+specification; so are the reference values, which were computed from the restored system.
 """
 
 from typing import Any
@@ -40,7 +40,6 @@ def _table() -> list[Claim]:
         Claim(
             id="linear-table",
             text="all three hands converge to one point (Figure 1)",
-            published="six points, by dwell (computed)",
             how="linear model, 300 s; consensus point less the table's, six dwells, largest",
             bound=Bound("<=", 0.01),
             unit="m",
@@ -51,7 +50,6 @@ def _table() -> list[Claim]:
         Claim(
             id="linear-line",
             text="if T_1 changes, the weight is shared by those who lead",
-            published="x + 2 y = 12 (computed)",
             how="the same runs, |x + 2 y - 12|, largest",
             bound=Bound("<=", 1e-6),
             unit="m",
@@ -62,7 +60,6 @@ def _table() -> list[Claim]:
         Claim(
             id="linear-time",
             text="all three hands converge to one point (Figure 1)",
-            published="58 s to 1 cm, 65 s at a dwell of 20 s (computed)",
             how="the same runs, time to a spread of 1 cm less the table's, largest",
             bound=Bound("<=", 1.0),
             unit="s",
@@ -115,7 +112,6 @@ def _table() -> list[Claim]:
         Claim(
             id="linear-random-leader",
             text="the topology may vary arbitrarily",
-            published="always converges (computed)",
             how="another leader of three every second, at random; largest spread after 300 s",
             bound=Bound("<=", 1e-3),
             unit="m",
@@ -126,7 +122,6 @@ def _table() -> list[Claim]:
         Claim(
             id="linear-joint",
             text="the condition is sufficient",
-            published="(6, 3) (computed)",
             how="only ever one link, 1-2 and 2-3 in turn, which never meets it: consensus less "
             "robot 1's start",
             bound=Bound("<=", 0.01),
@@ -157,7 +152,6 @@ def _theory() -> list[Claim]:
         Claim(
             id="example-rates",
             text="Example 4.1 for any relative degree",
-            published="-0.1123, -0.0578, -0.0389 (computed)",
             how="slow eigenvalue less that, l = 1, 2, 3, largest",
             bound=Bound("<=", 0.0005),
             unit="1/s",
@@ -259,7 +253,6 @@ def _negatives() -> list[Claim]:
         Claim(
             id="isolated-stays",
             text="each later group hears an earlier one (condition ii)",
-            published="1.91 m (computed)",
             how="robot 3 hears nobody, dwell 2 s, 300 s; spread",
             bound=Bound.within(1.90, 1.92),
             unit="m",
@@ -270,7 +263,6 @@ def _negatives() -> list[Claim]:
         Claim(
             id="decaying-stays",
             text="gains are nonzero infinitely often",
-            published="2.96 m for ever (computed): nonzero is not enough",
             how="gains 0.2 x 0.5^k, dwell 2 s, 300 s; spread",
             bound=Bound(">=", 2.5),
             unit="m",
@@ -291,7 +283,6 @@ def _negatives() -> list[Claim]:
         Claim(
             id="unequal-gains",
             text="multi-objective: channels with gains of their own",
-            published="(4.511, 3.387) (computed)",
             how="0.2 in x, 0.5 in y, dwell 5 s; consensus point less that",
             bound=Bound("<=", 0.01),
             unit="m",

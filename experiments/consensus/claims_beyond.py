@@ -27,22 +27,19 @@ def _sight() -> list[Claim]:
     return [
         _claim("cone-60-alone", "60 degrees, random headings, no scan; share of runs that agree "
                "to 0.1 m by 80 s", Bound("<=", 0.5), {**ALONE, "cone_deg": 60.0}, agreed, "",
-               SIGHT, published="never (reference run)"),
+               SIGHT),
         _claim("cone-120-alone", "120 degrees, random headings, no scan; the same",
-               Bound.within(0.1, 0.9), {**ALONE, "cone_deg": 120.0}, agreed, "", SIGHT,
-               published="half the time (reference run)"),
+               Bound.within(0.1, 0.9), {**ALONE, "cone_deg": 120.0}, agreed, "", SIGHT),
         _claim("cone-centroid", "90 and 120 degrees, facing the centroid within 0.3 rad; the same",
-               Bound(">=", 0.7), {**CENTROID, "cone_deg": (90.0, 120.0)}, agreed, "", SIGHT,
-               published="always (reference run)"),
+               Bound(">=", 0.7), {**CENTROID, "cone_deg": (90.0, 120.0)}, agreed, "", SIGHT),
         _claim("cone-reducible", "90 degrees, facing the centroid: share of looks whose graph is "
                "reducible, mean", Bound.within(0.5, 1.0), {**CENTROID, "cone_deg": 90.0},
-               mean("reducible"), "", SIGHT, published="0.93 (reference run)"),
+               mean("reducible"), "", SIGHT),
         _claim("cone-rooted", "the same runs: share of looks with somebody seen by all, least",
-               Bound(">=", 0.99), {**CENTROID, "cone_deg": 90.0}, least("rooted"), "", SIGHT,
-               published="always (reference run)"),
+               Bound(">=", 0.99), {**CENTROID, "cone_deg": 90.0}, least("rooted"), "", SIGHT),
         _claim("cone-off-line", "the same runs: distance of the agreed point from the given "
                "graphs' line, least", Bound(">=", 0.05), {**CENTROID, "cone_deg": 90.0},
-               least("line_m"), "m", SIGHT, published="not on x + 2 y = 12 (reference run)"),
+               least("line_m"), "m", SIGHT),
         _claim("scan-60", "60 degrees, random headings, who sees nobody turns; share that agree",
                Bound(">=", 0.7), {**SCAN, "cone_deg": 60.0}, agreed, "", SIGHT),
         _claim("scan-90", "90 degrees, the same", Bound(">=", 0.7), {**SCAN, "cone_deg": 90.0},
