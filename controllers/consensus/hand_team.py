@@ -65,6 +65,8 @@ class HandTeam:
 class Scan:
     """Who sees nobody and has not agreed yet turns on the spot until somebody comes into view.
 
+    It turns to the side on which it saw somebody last, anticlockwise if it never did.
+
     Ours: the paper's robots are heard or not; a robot whose graph comes from its own eyes and that
     sees nobody would stand for ever.
     """
@@ -75,20 +77,24 @@ class Scan:
         Args:
             n: Robots.
             patience: Without seeing anybody before it turns [s].
-            rate: Of the turn [rad/s], anticlockwise.
+            rate: Of the turn [rad/s].
             settled: Who was this near to all it last saw [m] stays as it is.
         """
         self._patience, self._rate, self._settled = patience, rate, settled
         self._since = np.full(n, -np.inf)
         self._error = np.full(n, np.inf)
+        self._side = np.ones(n)
 
-    def step(self, time: float, relative: Array, seen: Array, command: Array) -> Array:
+    def step(
+        self, time: float, relative: Array, seen: Array, bearing: Array, command: Array
+    ) -> Array:
         """Commands (n, 2), those of robots that scan replaced.
 
         Args:
             time: [s].
             relative: As of :meth:`HandTeam.step`.
             seen: Who sees whom now (n, n).
+            bearing: At which (n, n) [rad], left positive; NaN where not seen.
             command: (n, 2).
         """
         others = seen & ~np.eye(len(seen), dtype=bool)
@@ -96,5 +102,8 @@ class Scan:
         self._since[anybody] = time
         far = np.where(others, np.linalg.norm(np.nan_to_num(relative), axis=2), 0.0).max(axis=1)
         self._error[anybody] = far[anybody]
+        left = np.where(others, np.nan_to_num(bearing), 0.0).sum(axis=1) >= 0
+        self._side[anybody] = np.where(left, 1.0, -1.0)[anybody]
         lost = (time - self._since > self._patience) & (self._error > self._settled)
-        return np.where(lost[:, None], [0.0, self._rate], command)
+        turn = np.column_stack([np.zeros(len(command)), self._rate * self._side])
+        return np.where(lost[:, None], turn, command)

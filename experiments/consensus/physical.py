@@ -141,7 +141,7 @@ class Team:
             hands = hand_position(self.robots.localizer.read(), HAND)
         command = self.control.step(yaw, self.robots.executed, relative, self.sight.gains, hands)
         if self.condition["scan"]:
-            command = self.scan.step(time, relative, self.sight.seen, command)
+            command = self.scan.step(time, relative, self.sight.seen, self.sight.bearing, command)
         return command, self.sight.seen
 
     def _schedule(self, condition: Mapping[str, Any], streams: Streams) -> Schedule:
@@ -196,6 +196,7 @@ class Sight:
     Attributes:
         seen: Flags (n, n) of the newest look, everybody seeing itself.
         gains: That follow from them (n, n).
+        bearing: Of those seen (n, n) [rad], left positive.
         looks: Looks so far.
         reducible: Of these, whose graph was reducible.
         rooted: Of these, whose graph had somebody seen by all, directly or through others.
@@ -206,6 +207,7 @@ class Sight:
         self._n, self._weight = n, weight
         self.seen = np.eye(n, dtype=bool)
         self.gains = np.eye(n)
+        self.bearing = np.full((n, n), np.nan)
         self.looks = self.reducible = self.rooted = 0
         self._at = -math.inf
         self._relative = np.full((n, n, 2), np.nan)
@@ -226,6 +228,7 @@ class Sight:
             )
             place[..., 0] -= HAND  # from hand to hand
             self._relative = offset_relative(rotate(place, yaw[:, None]), offsets)
+            self.bearing = found[..., 1]
             self.seen = np.isfinite(found[..., 0]) | np.eye(self._n, dtype=bool)
             self.gains = neighbour_gains(self.seen, self._weight)
             self.looks += 1

@@ -84,11 +84,15 @@ def test_scan_turns_who_sees_nobody_and_has_not_agreed():
     seen = np.eye(3, dtype=bool)
     seen[0, 1] = seen[2, 1] = True
     relative[0, 1], relative[2, 1] = [2.0, 0.0], [0.05, 0.0]
-    first = scan.step(0.0, relative, seen, command)
+    bearing = np.full((3, 3), np.nan)
+    bearing[0, 1], bearing[2, 1] = -0.5, 0.3
+    first = scan.step(0.0, relative, seen, bearing, command)
     # robot 1 has never seen anybody
     np.testing.assert_array_equal(first, [[0.3, 0.1], [0.0, 0.5], [0.3, 0.1]])
     alone = np.eye(3, dtype=bool)
-    np.testing.assert_array_equal(scan.step(0.9, relative, alone, command)[[0, 2]], command[:2])
-    later = scan.step(1.1, relative, alone, command)
-    # robot 2 had agreed to 5 cm and stays as it is
-    np.testing.assert_array_equal(later, [[0.0, 0.5], [0.0, 0.5], [0.3, 0.1]])
+    blind = np.full((3, 3), np.nan)
+    soon = scan.step(0.9, relative, alone, blind, command)
+    np.testing.assert_array_equal(soon[[0, 2]], command[:2])
+    later = scan.step(1.1, relative, alone, blind, command)
+    # robot 0 saw somebody on its right; robot 2 had agreed to 5 cm and stays as it is
+    np.testing.assert_array_equal(later, [[0.0, -0.5], [0.0, 0.5], [0.3, 0.1]])
