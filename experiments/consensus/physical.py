@@ -339,7 +339,7 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
     return found
 
 
-def _codes(heard: list[NDArray[np.bool_]]) -> Array:
+def _codes(heard: list[NDArray[np.bool_]]) -> NDArray[np.int64]:
     """Graphs as numbers: bit i n + j is set if i hears j."""
     flags = np.array(heard).reshape(len(heard), -1)
-    return flags @ (1 << np.arange(flags.shape[1]))
+    return (flags @ (1 << np.arange(flags.shape[1]))).astype(np.int64)

@@ -1,5 +1,7 @@
 """Study consensus: its graphs, its linear model, and short runs of bodies."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -16,7 +18,7 @@ from mjmr.errors import InvalidInputError, TruthError
 SHORT = {"mode": "physical", "duration": 4.0}
 
 
-def run(seed=1000, **given):
+def run(seed=1000, **given) -> Any:
     return trial(study.condition(**given), seed)
 
 

@@ -1,6 +1,7 @@
 """ConeSight: cone, range, what is in the way, and the frame of what is told."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,12 +15,12 @@ from mjmr.world import World
 EYE, MARK = (0.2, 0.0, 0.3), (0.1, 0.0, 0.4)
 
 
-def look(poses, box=None, **changes):
+def look(poses, box=None, **changes: Any):
     world = World(bounds=[-8, -8, 8, 8], wall_height=0.5)
     if box is not None:
-        world.add_box(*box, 0.2, 0.2, height=0.6)
+        world.add_box(box[0], box[1], 0.2, 0.2, height=0.6)
     world.add_group(Pioneer2DX, poses)
-    options = {"cone": math.radians(90), "range": 6.0, "eye": EYE, "mark": MARK}
+    options: dict[str, Any] = {"cone": math.radians(90), "range": 6.0, "eye": EYE, "mark": MARK}
     sight = world.mount(ConeSight(**(options | changes)))
     simulation = Simulation(world, control_period=0.1)
     next(simulation.ticks(0.1))
