@@ -1,5 +1,7 @@
 """Consensus: chains of first-order lags agree over graphs that change. The declaration."""
 
+from pathlib import Path
+
 from experiments.consensus.sizes import FULL, QUICK, STANDARD
 from mjmr.conditions import Parameter
 from mjmr.study import Study
@@ -98,4 +100,5 @@ study = Study(
     world=f"{_HERE}.trial:world",
     bench=f"{_HERE}.bench:bench",
     prepare=f"{_HERE}.trial:prepare",
+    verdicts=Path(__file__).with_name("verdicts.json"),
 )
