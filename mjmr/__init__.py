@@ -38,6 +38,7 @@ _WHERE = {
     "CableTension": "mjmr.sensors.cable_tension",
     "Camera": "mjmr.sensors.camera",
     "Compass": "mjmr.sensors.compass",
+    "ConeSight": "mjmr.sensors.cone_sight",
     "Film": "mjmr.film",
     "FilmOptions": "mjmr.film_options",
     "Fault": "mjmr.faults",

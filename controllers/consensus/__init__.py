@@ -15,6 +15,7 @@ from controllers.consensus.hand import (
     hand_position,
     hand_velocity,
 )
+from controllers.consensus.hand_team import HandTeam, Scan
 from controllers.consensus.leader_follower import SeparationBearing
 from controllers.consensus.relative import acceleration, offset_relative
 from controllers.consensus.structure import (
@@ -30,6 +31,8 @@ __all__ = [
     "AverageConsensus",
     "CanonicalModel",
     "Condensation",
+    "HandTeam",
+    "Scan",
     "SeparationBearing",
     "StructureReport",
     "acceleration",

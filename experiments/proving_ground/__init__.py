@@ -52,6 +52,7 @@ study = Study(
                 "round_pusher",
                 "soccer_bot",
                 "tj_pro",
+                "four_wheeler",
                 "sensors",
             ),
         ),

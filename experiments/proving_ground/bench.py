@@ -24,6 +24,7 @@ _TOLD: dict[str, tuple[list[float], float, float]] = {
     "tamiya_txt1": ([1.0, 0.2], 0.1, 0.005),
     "round_pusher": ([0.3, 0.5], 0.1, 0.010),
     "nims": ([0.1, 0.0], 0.1, 0.010),
+    "four_wheeler": ([0.5, 0.5], 0.1, 0.010),
     "tj_pro": ([0.15, 0.5], 0.1, 0.010),
     "soccer_bot": ([0.5, 0.2, 0.5], 1 / 60, 0.005),
 }

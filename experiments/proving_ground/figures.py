@@ -63,6 +63,12 @@ SHOWN = {
         "tj_pro-arc": "arc of unequal servos, heading off",
         "tj_pro-slip": "push on a wall, tyres slipping",
     },
+    "four_wheeler": {
+        "four_wheeler-straight": "5 m straight, error",
+        "four_wheeler-turn": "three turns in place, error",
+        "four_wheeler-scrub": "turn by encoders / true turn",
+        "four_wheeler-stop-tilt": "tilt in reversing from 1 m/s",
+    },
 }
 
 

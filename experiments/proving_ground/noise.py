@@ -92,6 +92,7 @@ _OF: dict[str, Callable[[], list[Sensor]]] = {
     "nims": lambda: [CableTension(), ForceTorque(site="package")],
     "soccer_bot": list,
     "tj_pro": lambda: [InfraredProximity(trip=0.1)],
+    "four_wheeler": lambda: [PanTilt()],
 }
 
 

@@ -9,8 +9,9 @@ _DT = (2.0, 5.0)
 _AIBO: dict[str, Any] = {"platform": "aibo_ers7", "friction": (0.6, 1.0), "dt_ms": (2.0, 4.0)}
 _ROBOTS = (
     "pioneer2dx", "koala", "aibo_ers7", "tamiya_txt1", "nims", "round_pusher", "soccer_bot",
-    "tj_pro",
+    "tj_pro", "four_wheeler",
 )  # fmt: skip
+_FOUR: dict[str, Any] = {"platform": "four_wheeler", "test": ("straight", "turn", "stop")}
 _TJ_PRO: dict[str, Any] = {"platform": "tj_pro", "test": ("straight", "turn", "circle", "stop")}
 _PUSHER: dict[str, Any] = {
     "platform": "round_pusher",
@@ -81,6 +82,7 @@ def _large(seeds: int, worlds: int) -> tuple[Grid, ...]:
         Grid(platform="aibo_ers7", test="roll", dt_ms=(2.0, 4.0), seeds=1),
         Grid(**_TJ_PRO, dt_ms=(5.0, 10.0), seeds=5),
         Grid(**_PUSHER, dt_ms=(5.0, 10.0), seeds=5),
+        Grid(**_FOUR, dt_ms=(5.0, 10.0), seeds=5),
         Grid(platform="sensors", test=("lidar", "camera", "camera-in-view"), seeds=5),
         Grid(platform="sensors", test=("lidar-noise", "sonar", "sonar-thin", "schedule"), seeds=1),
         Grid(platform=_ROBOTS, test="noise", seeds=100),
@@ -110,6 +112,7 @@ QUICK = Size(
         ),
         Grid(**_TJ_PRO, dt_ms=10.0, seeds=1),
         Grid(**_PUSHER, dt_ms=10.0, seeds=1),
+        Grid(**_FOUR, dt_ms=10.0, seeds=1),
         Grid(
             platform="sensors",
             test=("lidar", "camera", "camera-in-view", "lidar-noise", "schedule"), seeds=1,

@@ -17,6 +17,7 @@ MODULES = {
     "round_pusher": "round_pusher",
     "soccer_bot": "soccer",
     "tj_pro": "tj_pro",
+    "four_wheeler": "four_wheeler",
     "sensors": "sensors",
 }
 

@@ -1,0 +1,47 @@
+"""The study's film: three robots close on their formation, the graph drawn as it switches."""
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+from experiments.consensus.physical import Team
+from mjmr.film import Film
+from mjmr.film_options import FilmOptions
+from mjmr.recording import Recording
+from mjmr.study import Study
+
+SECONDS = 45.0
+_SPEED = 8.0  # times real time, unless asked otherwise
+SHOWN: tuple[tuple[str, dict[str, Any]], ...] = (
+    ("graphs given, a new leader every 5 s", {}),
+    ("graphs from sight, cones of 90 degrees", {"sight": "rays", "scan": True}),
+)
+
+
+def show(changes: dict[str, Any], seed: int) -> Recording:
+    """Run three robots in MuJoCo and record them."""
+    from experiments.consensus import study
+
+    team = Team(study.condition(mode="physical", **changes), seed)
+
+    def caption() -> str:
+        hears = [
+            f"{i} hears {j}"
+            for i in range(team.n)
+            for j in range(team.n)
+            if i != j and team.log.heard and team.log.heard[-1][i, j]
+        ]
+        return f"spread {team.log.spread_now:.2f} m; {', '.join(hears) or 'nobody hears anybody'}"
+
+    recording = Recording(team.simulation, caption)
+    team.run(SECONDS)
+    return recording
+
+
+def film(study: Study, path: Path, options: FilmOptions) -> None:
+    """Write the film."""
+    options = dataclasses.replace(options, speed=options.speed or _SPEED)
+    picture = Film(f"Consensus over graphs that switch{study.swapped}", options)
+    for label, changes in SHOWN:
+        picture.add(show(changes, 1), label, trail=float("inf"))
+    picture.write(path)

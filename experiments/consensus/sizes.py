@@ -1,0 +1,92 @@
+"""How much each size runs: the same experiments, with other numbers of seeds.
+
+A table of dwells, B Example 4.1, C random sequences and lemmas, D negatives, E graphs from sight,
+F noise, loss, delay and faults; barrier; scale.
+"""
+
+from typing import Any
+
+from mjmr.conditions import Grid
+from mjmr.study import Size
+
+DWELLS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
+BODY: dict[str, Any] = {"mode": "physical", "duration": 80.0}
+SEEN: dict[str, Any] = {**BODY, "sight": "rays"}
+CROSSED: dict[str, Any] = {**BODY, "side": 1.2, "places": "crossed"}
+MANY: dict[str, Any] = {"experiment": "graph"}
+GRAPHS = ("ring", "path", "star", "complete", "geometric")
+COUNTS = (3, 10, 30, 100)
+SHORT = ("star", "complete", "geometric")
+"""Graphs on which a hundred robots agree within two minutes."""
+
+
+def _theory(seeds: int) -> tuple[Grid, ...]:
+    one: dict[str, Any] = {"seeds": 1}
+    return (
+        Grid(dwell=DWELLS, **one),
+        Grid(schedule=("case-i", "case-ii", "star"), **one),
+        Grid(schedule="random-leader", dwell=1.0, seeds=max(1, seeds // 5)),
+        Grid(experiment="example-4.1", degree=(1, 2, 3), seeds=max(1, seeds // 10)),
+        Grid(experiment="random-sequence", seeds=seeds),
+        Grid(experiment="lemmas", seeds=max(1, seeds // 20)),
+        Grid(schedule="joint", duration=800.0, anyway=True, **one),
+        Grid(schedule=("isolated", "decaying"), dwell=2.0, anyway=True, **one),
+        Grid(experiment="mixed-channels", duration=800.0, **one),
+        Grid(weight_y=0.5, **one),
+        Grid(degrees=("1", "3", "1 2 3", "3 1 2"), duration=800.0, **one),
+    )
+
+
+def _large(theory: int, bodies: int, sights: int, cameras: int, crowds: int) -> tuple[Grid, ...]:
+    return (
+        *_theory(theory),
+        Grid(**BODY, dwell=(2.0, 5.0, 20.0), seeds=bodies),
+        Grid(**BODY, calibrated=False, seeds=bodies),
+        Grid(**BODY, schedule=("case-i", "case-ii"), seeds=bodies),
+        # F
+        Grid(**BODY, noise=0.05, seeds=bodies),
+        Grid(**BODY, loss=0.5, seeds=bodies),
+        Grid(**BODY, delay=0.5, seeds=bodies),
+        Grid(**BODY, noise=0.05, loss=0.5, delay=0.5, seeds=bodies),
+        Grid(**BODY, fault=("follower-dies", "leader-freezes"), seeds=bodies),
+        # E
+        Grid(**SEEN, cone_deg=(60.0, 90.0, 120.0), scan=(False, True), seeds=sights),
+        Grid(**SEEN, cone_deg=(90.0, 120.0), heading="centroid", seeds=sights),
+        Grid(**BODY, sight="camera", cone_deg=(90.0, 120.0), scan=True, seeds=cameras),
+        Grid(**BODY, experiment="agreement", cone_deg=(60.0, 90.0, 120.0), scan=True,
+             seeds=max(1, cameras // 2)),
+        # barrier
+        Grid(**BODY, side=1.2, avoid="barrier", seeds=bodies),
+        Grid(**CROSSED, avoid=("none", "barrier"), seeds=bodies),
+        # scale
+        Grid(**MANY, duration=20000.0, graph=GRAPHS, robots=COUNTS, seeds=crowds),
+        Grid(**MANY, mode="physical", duration=120.0, graph=GRAPHS, robots=10, seeds=crowds),
+        Grid(**MANY, mode="physical", duration=120.0, graph=SHORT, robots=(30, 100), seeds=crowds),
+    )  # fmt: skip
+
+
+QUICK = Size(
+    "quick",
+    grids=(
+        *_theory(10),
+        Grid(**BODY, seeds=1),
+        Grid(**BODY, noise=0.05, seeds=1),
+        Grid(**SEEN, scan=True, seeds=1),
+    ),
+    default_seeds=1,
+    expected_minutes=0.3,
+    note="the linear model in full but for 10 random sequences; three runs in MuJoCo",
+)
+STANDARD = Size(
+    "standard",
+    grids=_large(theory=100, bodies=5, sights=6, cameras=2, crowds=3),
+    default_seeds=5,
+    expected_minutes=5.0,
+    note="cameras rendered in four runs and compared with rays in three",
+)
+FULL = Size(
+    "full",
+    grids=_large(theory=400, bodies=20, sights=20, cameras=10, crowds=10),
+    default_seeds=20,
+    expected_minutes=30.0,
+)

@@ -1,0 +1,51 @@
+"""One trial: the experiment its condition names."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from experiments.consensus import agreement, linear, physical
+from mjmr.errors import InvalidInputError
+
+Metrics = dict[str, float | int | str | bool | None]
+MODES = {
+    "three": ("linear", "physical"),
+    "graph": ("linear", "physical"),
+    "agreement": ("physical",),
+    "example-4.1": ("linear",),
+    "random-sequence": ("linear",),
+    "mixed-channels": ("linear",),
+    "lemmas": ("linear",),
+}
+
+
+def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
+    """Run one experiment.
+
+    Raises:
+        InvalidInputError: The mode has no such experiment, or graphs that never meet the
+            structure condition and nobody asked for them.
+    """
+    experiment, mode = condition["experiment"], condition["mode"]
+    if mode not in MODES[experiment]:
+        raise InvalidInputError(
+            f"experiment {experiment} is of mode {' or '.join(MODES[experiment])}; got {mode}"
+        )
+    if mode == "linear":
+        return linear.trial(condition, seed)
+    if experiment == "agreement":
+        return agreement.trial(condition, seed)
+    return physical.trial(condition, seed)
+
+
+def world(condition: Mapping[str, Any]) -> Any:
+    """The hall of a physical condition with its robots, seed 0, for ``mjmr mjcf``."""
+    return physical.Team(condition, 0).simulation.world
+
+
+def prepare() -> None:
+    """Compile what trials call, by a short one."""
+    from experiments.consensus import study
+
+    for sight in ("given", "rays"):
+        condition = study.condition(mode="physical", sight=sight, duration=0.2)
+        physical.Team(condition, 1000).run(0.2)

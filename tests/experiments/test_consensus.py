@@ -1,0 +1,154 @@
+"""Study consensus: its graphs, its linear model, and short runs of bodies."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from controllers.consensus import check_structure, rooted
+from experiments.consensus import study
+from experiments.consensus.claims import claims
+from experiments.consensus.graphs import random_admissible, team_graph, three
+from experiments.consensus.linear import degrees_of
+from experiments.consensus.physical import Team
+from experiments.consensus.plots import series
+from experiments.consensus.trial import trial, world
+from mjmr.errors import InvalidInputError, TruthError
+
+SHORT = {"mode": "physical", "duration": 4.0}
+
+
+def run(seed=1000, **given) -> Any:
+    return trial(study.condition(**given), seed)
+
+
+def test_claims_are_told_apart_and_name_parameters_there_are():
+    every = claims()
+    assert len({c.id for c in every}) == len(every)
+    names = {p.name for p in study.parameters}
+    assert all(set(c.needs) <= names for c in every)
+
+
+@pytest.mark.parametrize("size", ["quick", "standard", "full"])
+def test_every_size_has_what_its_claims_need(size):
+    conditions = [c for c, _ in study.trials(size)]
+    for claim in claims():
+        if size not in claim.sizes:
+            continue
+        wanted = {k: v if isinstance(v, tuple) else (v,) for k, v in claim.needs.items()}
+        assert any(all(c[k] in v for k, v in wanted.items()) for c in conditions), claim.id
+
+
+def test_schedules_that_meet_the_condition_are_told_from_those_that_never_do():
+    rng = np.random.default_rng(0)
+    names = ("alternate", "case-i", "star", "joint", "isolated", "decaying")
+    holds = {name: three(name, 2.0, 60.0, 0.2, rng).structure().holds for name in names}
+    assert holds == {"alternate": True, "case-i": True, "star": True, "joint": False,
+                     "isolated": False, "decaying": False}  # fmt: skip
+
+
+@pytest.mark.parametrize("mode", ["linear", "physical"])
+@pytest.mark.parametrize("schedule", ["isolated", "decaying", "joint"])
+def test_hopeless_graphs_are_refused_before_running_and_run_if_asked(mode, schedule):
+    given = {"mode": mode, "schedule": schedule, "dwell": 0.5, "duration": 10.0}
+    with pytest.raises(InvalidInputError, match="never meet Assumption 4.2.*anyway=true"):
+        run(**given)
+    if mode == "linear":
+        assert run(**given, anyway=True)["spread_m"] > 0.5
+
+
+def test_degrees_below_one_or_of_the_wrong_number_are_refused():
+    assert degrees_of("3 1 2", 3) == [3, 1, 2]
+    with pytest.raises(InvalidInputError, match="system 1 has 0"):
+        run(degrees="1 0 2")
+    with pytest.raises(InvalidInputError, match="there are 3 robots; got 2 degrees"):
+        run(degrees="1 2")
+    with pytest.raises(InvalidInputError, match="whole numbers separated by spaces"):
+        run(degrees="two")
+    with pytest.raises(InvalidInputError, match="experiment lemmas is of mode linear"):
+        run(mode="physical", experiment="lemmas")
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_random_sequences_are_admissible_and_the_others_between_are_not_all(seed):
+    rng = np.random.default_rng(seed)
+    q = int(rng.integers(5, 13))
+    graphs, gains = random_admissible(q, 24, rng)
+    assert check_structure(graphs, gains, epsilon=0.01).holds
+    alone = [
+        check_structure([g], [w], epsilon=0.01).holds for g, w in zip(graphs, gains, strict=True)
+    ]
+    assert all(alone[::3])
+    assert not all(alone)
+    np.testing.assert_allclose(np.sum(gains, axis=2), 1.0)
+
+
+@pytest.mark.parametrize("name", ["ring", "path", "star", "complete", "geometric"])
+def test_graphs_of_many_are_connected_both_ways(name):
+    graph = team_graph(name, 12, np.random.default_rng(3))
+    assert (graph == graph.T).all()
+    assert rooted(graph)
+    links = graph.sum() - 12
+    assert links == {"ring": 24, "path": 22, "star": 22, "complete": 132}.get(name, links)
+
+
+def test_the_table_of_dwells_and_a_leader_with_a_velocity():
+    found = run(dwell=5.0)
+    assert (found["x_m"], found["y_m"]) == pytest.approx((4.511, 3.744), abs=1e-3)
+    from experiments.consensus.linear import START, Runner
+    from experiments.consensus.linear import run as follow
+
+    schedule = three("case-i", 5.0, 300.0, 0.2, np.random.default_rng(0))
+    velocity = np.array([[0.4, -0.2], [0.0, 0.0], [0.0, 0.0]])
+    ends = follow(Runner([2, 2, 2]), START, schedule, 300.0, velocity=velocity)
+    # a leader that starts with velocity w ends at p + w / 2
+    assert (ends["x_m"], ends["y_m"]) == pytest.approx((6.2, 2.9), abs=1e-6)
+
+
+def test_bodies_close_in_and_the_same_seed_gives_the_same_bits():
+    one, two = run(**SHORT), run(**SHORT)
+    assert one == two
+    assert run(seed=1001, **SHORT)["x_m"] != one["x_m"]
+    outputs, heard = series(one)
+    assert outputs.shape == (5, 3, 2)
+    assert heard.shape == (5, 3, 3)
+    assert one["spread_m"] < 4.0 < np.linalg.norm(outputs[0, 0] - outputs[0, 1])
+    assert one["contacts"] == 0
+
+
+def test_a_controller_reads_no_truth():
+    team = Team(study.condition(**SHORT, sight="rays", scan=True), 1000)
+    for time in team.simulation.ticks(0.2):
+        team.tick(time)
+        with pytest.raises(TruthError):
+            team.simulation.truth.poses(team.robots)
+
+
+def test_who_sees_nobody_stands_unless_it_scans():
+    alone = {**SHORT, "sight": "rays", "cone_deg": 10.0}
+    assert run(seed=1002, **alone)["peak_turn"] < 0.05
+    assert run(seed=1002, **alone, scan=True)["peak_turn"] > 0.4
+
+
+def test_a_dead_robot_stands_and_a_hundredfold_team_is_built_without_overlap():
+    team = Team(study.condition(**SHORT, fault="follower-dies"), 1000)
+    team.run(12.0)
+    before = team.log.output[2].copy()
+    team.run(1.0)
+    np.testing.assert_allclose(team.log.output[2], before, atol=1e-3)
+    crowd = Team(study.condition(**SHORT, experiment="graph", robots=30, graph="complete"), 1000)
+    crowd.run(2.0)
+    assert crowd.log.meter.episodes == 0
+    assert crowd.log.spread_now < 1.3
+
+
+def test_the_world_can_be_written_as_mjcf():
+    assert "rover2/" in world(study.condition(mode="physical")).to_xml()
+
+
+@pytest.mark.slow
+def test_cameras_and_rays_tell_the_same():
+    found = run(mode="physical", experiment="agreement", scan=True, duration=8.0)
+    assert found["inside_same"] > 0.98
+    assert found["bearing_rms_deg"] < 1.0
+    assert found["seen"] > 50
