@@ -16,6 +16,7 @@ from mjmr.errors import InvalidInputError
 from mjmr.film_options import FilmOptions
 from mjmr.footage import Footage
 from mjmr.overlay import draw_notes, draw_text, draw_trails, palette
+from mjmr.pillar import Pillars
 from mjmr.recording import Recording
 from mjmr.render import Renderer
 from mjmr.video import VideoWriter
@@ -23,6 +24,7 @@ from mjmr.video import VideoWriter
 MAX_SECONDS = 60.0
 _HEADER = 44
 _TRAIL_POINTS = 400
+_PILLAR_SIDES = 64  # of round shapes where there are large ones
 
 
 class Film:
@@ -188,8 +190,10 @@ class _Panel:
         if options.look == "draft":
             _boxes_for_planes(self._model)
         self._data = mujoco.MjData(self._model)
+        self._pillars = Pillars(self._model)
         self._colours = palette(len(footage.radii))
-        self._renderer = Renderer(self._model, width, height, options.look)
+        sides = _PILLAR_SIDES if self._pillars.any else 0
+        self._renderer = Renderer(self._model, width, height, options.look, sides)
         self._azimuth: float | None = None
         whole = corner_camera if options.camera == "corner" else overview_camera
         self._whole = whole(footage.bounds, width / height, self._model)
@@ -205,6 +209,7 @@ class _Panel:
         mujoco.mj_camlight(model, data)
         mujoco.mj_tendon(model, data)
         renderer = self._renderer
+        self._pillars.resize(renderer.model, float(times[index]))
         image = renderer.picture(data, self._camera(index))
         view = renderer.view()
         rows = self._trail_rows(index)

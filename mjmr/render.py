@@ -30,7 +30,9 @@ _open: "weakref.WeakSet[Renderer]" = weakref.WeakSet()
 class Renderer:
     """Renders RGB pictures; ``draft`` without shadows and anti-aliasing, ``fine`` with both."""
 
-    def __init__(self, model: mujoco.MjModel, width: int, height: int, look: str = "draft"):
+    def __init__(
+        self, model: mujoco.MjModel, width: int, height: int, look: str = "draft", sides: int = 0
+    ):
         """Open an off-screen context.
 
         Args:
@@ -38,6 +40,7 @@ class Renderer:
             width: [px].
             height: [px].
             look: One of ``LOOKS``.
+            sides: Of what stands for a circle; 0: what the look has.
 
         Raises:
             MissingGLError: No OpenGL; the message says what to install.
@@ -57,6 +60,8 @@ class Renderer:
             lamps = model.light_type != mujoco.mjtLightType.mjLIGHT_DIRECTIONAL
             quality.numquads = _LAMP_QUADS if lamps.any() else 1
             quality.shadowsize = 0  # the map would take 64 MiB in every context
+        if sides:
+            quality.numslices = sides
         _free_forgotten()
         try:
             self._renderer = mujoco.Renderer(model, height, width)
