@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controllers.perimeter.config import PerimeterConfig
-from controllers.perimeter.states import TRACKING
+from controllers.perimeter.states import ACQUIRE, TRACKING
 from mjmr.geometry import wrap_angle
 
 Array = NDArray[np.float64]
@@ -52,6 +52,7 @@ class Avoidance:
         """Args: n: How many robots. config: With the distances."""
         self._config = config
         self.waiting = np.zeros(n)
+        self._clear = np.full(n, np.inf)  # s, since somebody ahead was last in the way
 
     def apply(self, command: Array, state: NDArray[np.int64], near: Neighbours, body: Array
               ) -> Array:  # fmt: skip
@@ -99,14 +100,18 @@ class Avoidance:
         goes_first = np.where(tracks == other_tracks, rank[:, None] < rank[None], ~tracks)
         stopped_by = ahead & ~(mutual & goes_first)
         unknown = self._unknown(near, body)
-        stopped = stopped_by.any(axis=1) | unknown
+        blocked = stopped_by.any(axis=1) | unknown
+        # for a moment longer: stop and go at the limit of what is ahead creeps without turning
+        self._clear = np.where(blocked, 0.0, self._clear + c.period)
+        stopped = self._clear < c.hold
         passes = (mutual & goes_first).any(axis=1) & ~stopped
         self.waiting = np.where(stopped, self.waiting + c.period, 0.0)
         # who has waited long enough goes round; on the perimeter one waits
         patient = self.waiting < c.patience
         around = stopped & ~patient & (state != TRACKING) & ~self._too_near(near, body)
         bearing = self._nearest_bearing(near, body, ahead, unknown)
-        away = np.where(bearing >= 0.0, -c.top_turn, c.top_turn)
+        # beside the perimeter, which is on the left, always to the right
+        away = np.where((bearing >= 0.0) | (state >= ACQUIRE), -c.top_turn, c.top_turn)
         forward, turn = command.T
         forward = np.where(stopped, 0.0, np.where(passes, np.minimum(forward, c.pass_speed),
                                                   forward))  # fmt: skip

@@ -33,6 +33,7 @@ class PerimeterConfig:
         guard_angle: To each side, what counts as ahead [rad].
         pass_speed: At which one passes who waits [m/s].
         patience: For which one waits for somebody who does not move [s].
+        hold: For which one goes on waiting when nobody is ahead any more [s].
         sense_range: D_sen, at which the perimeter is acquired [m].
         look_ahead: Of the sensor's spot before the rear axle [m].
         look_left: And to the left [m].
@@ -66,6 +67,7 @@ class PerimeterConfig:
     guard_angle: float = math.radians(60.0)
     pass_speed: float = 0.3
     patience: float = 4.0
+    hold: float = 1.0
     sense_range: float = 3.0
     look_ahead: float = 0.5
     look_left: float = 0.6

@@ -137,6 +137,10 @@ class PerimeterTeam:
         lost = time - self._seen_at > c.lose_after
         with np.errstate(invalid="ignore"):
             aligned = (np.abs(error) < c.hand_over_error) & (np.abs(tangent) < c.hand_over_angle)
+            # turning as slowly as bang-bang does, it must not get too near (ours)
+            circle = c.track_speed / c.track_turn
+            inwards = circle * (1.0 - np.cos(np.minimum(tangent, 0.0)))
+            aligned &= error - inwards > -c.hand_over_error / 2.0
             astray = (np.abs(error) > 4.0 * c.hand_over_error) | (
                 np.abs(tangent) > 3.0 * c.hand_over_angle
             )

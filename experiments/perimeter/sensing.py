@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from controllers.perimeter.percepts import SPOKEN, Percepts, nearest_of_kind
+from controllers.perimeter.percepts import SPOKEN, Percepts, foot_of_edge, nearest_of_kind
 from controllers.perimeter.vision import inside
 from experiments.perimeter.worlds import Scene
 from mjmr.bus import Bus
@@ -74,23 +74,25 @@ class Senses:
         trucks = scene.trucks
         self.n = trucks.n
         self.radio = Radio(simulation, range=condition["d_com"])
-        self.bus = bus = Bus(simulation, self.n)
+        self.bus = Bus(simulation, self.n)
         arc, localizer = trucks.arc, trucks.localizer
         site = simulation.rays.sites(trucks.prefixes[:1], ["lidar"])[0]
         at = simulation.rays.mounts(site)[0]
 
-        def nearest(kind: int, reach: float) -> Array:
-            return nearest_of_kind(arc.read(), arc.angles, kind, at, reach)
+        def edge() -> Array:
+            return foot_of_edge(arc.read(), arc.angles, PILLAR, at, SENSE)
+
+        def body() -> Array:
+            return nearest_of_kind(arc.read(), arc.angles, ROBOT, at, SEE)
 
         if condition["sensing"] == "camera":
             eye = trucks.eye
             self._attach(INSIDE, lambda: inside(eye.read()), lambda: eye.sampled_at)
         else:
             self._attach(INSIDE, trucks.spot.read, lambda: trucks.spot.sampled_at)
-        self._attach(EDGE, lambda: nearest(PILLAR, SENSE), lambda: arc.sampled_at)
-        self._attach(BODY, lambda: nearest(ROBOT, SEE), lambda: arc.sampled_at)
+        self._attach(EDGE, edge, lambda: arc.sampled_at)
+        self._attach(BODY, body, lambda: arc.sampled_at)
         self._attach(POSE, localizer.read, lambda: localizer.sampled_at)
-        del bus
 
     def _attach(self, name: str, read: Any, sampled_at: Any) -> None:
         self.bus.attach(name, IDENTIFIERS[name], read, sampled_at, size=SIZES[name])
