@@ -263,8 +263,7 @@ class Bus:
         ):
             if flags.any():
                 self.changes += [
-                    Change(time, int(i), self._devices[k].name, kind)
-                    for i, k in np.argwhere(flags)
+                    Change(time, int(i), self._devices[k].name, kind) for i, k in np.argwhere(flags)
                 ]
         self._known, self._known_well = ~gone, well
 

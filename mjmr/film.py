@@ -111,8 +111,7 @@ class Film:
         options, count = self.options, len(self._panels)
         width, height = options.width // count // 2 * 2, options.height - _HEADER
         panels = [
-            _PanelThread(kind, r, label, width, height, own)
-            for kind, r, label, own in self._panels
+            _PanelThread(kind, r, label, width, height, own) for kind, r, label, own in self._panels
         ]
         try:
             ahead = [panel.picture(times[0]) for panel in panels]

@@ -132,9 +132,7 @@ class Pillars:
     def radii(self, time: float) -> NDArray[np.float64]:
         """Radii (k,) at ``time`` [s], in m; see :meth:`Pillar.radius_at`."""
         now = self._first + self._rate * max(time, 0.0)
-        return np.where(
-            self._rate > 0, np.minimum(now, self._limit), np.maximum(now, self._limit)
-        )
+        return np.where(self._rate > 0, np.minimum(now, self._limit), np.maximum(now, self._limit))
 
     def resize(self, model: "mujoco.MjModel", time: float) -> None:
         """Give them in ``model`` the radii they have at ``time`` [s]; their bounds stay."""

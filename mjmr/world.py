@@ -1,4 +1,4 @@
-"""World: floor, walls, boxes, balls, discs, pillars and robots, declared once and built into an MjSpec.
+"""World: floor, walls, props and robots, declared once and built into an MjSpec.
 
 The declaration is what planners, meters and films read; the MjSpec is built from it when a
 simulation or a film needs one, so that a kinematic run loads no MuJoCo.

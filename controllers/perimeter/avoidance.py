@@ -70,7 +70,8 @@ class Avoidance:
 
     def _rule(self, command: Array, state: NDArray[np.int64], near: Neighbours) -> Array:
         """Rule 3, while searching and approaching: who approach each other both turn right; of two
-        that follow each other the one behind turns away."""
+        that follow each other the one behind turns away.
+        """
         c = self._config
         with np.errstate(invalid="ignore"):
             close = near.apart < c.avoid_radius

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 POINTS = 60
 STEP = 0.5  # m, between two points that are kept
+ENOUGH = 24  # points: on a shorter arc noise makes circles too small
 
 
 class TrackedCircles:
@@ -19,7 +20,7 @@ class TrackedCircles:
 
     @property
     def radius(self) -> Array:
-        """Of each robot's circle (n,) [m]; NaN before 4 m of track."""
+        """Of each robot's circle (n,) [m]; NaN before 12 m of track."""
         return self._radius.copy()
 
     def add(self, pose: Array, tracks: NDArray[np.bool_]) -> None:
@@ -35,9 +36,9 @@ class TrackedCircles:
                 self._points[i] = np.nan
             self._points[i, self._count[i] % POINTS] = pose[i, :2]
             self._count[i] += 1
-            if self._count[i] >= 8:
+            if self._count[i] >= ENOUGH:
                 self._radius[i] = circle(self._points[i, : min(self._count[i], POINTS)])
-        self._radius = np.where(self._count >= 8, self._radius, np.nan)
+        self._radius = np.where(self._count >= ENOUGH, self._radius, np.nan)
 
 
 def circle(points: Array) -> float:

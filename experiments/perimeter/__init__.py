@@ -53,9 +53,7 @@ study = Study(
         Parameter("edge", "disc, or three discs that overlap", "disc", ("disc", "lobes")),
         Parameter("d_com", "range of the radio", 25.0, unit="m", least=0.0),
         Parameter("spacing", "rule of equation 8", "repaired", ("repaired", "literal")),
-        Parameter(
-            "factor", "d_des in even chords; 0: 1 - .05 / (robots - 1)", 0.0, least=0.0
-        ),
+        Parameter("factor", "d_des in even chords; 0: 1 - .05 / (robots - 1)", 0.0, least=0.0),
         Parameter(
             "estimated",
             "whether d_des is estimated on line from who tracks and the circle tracked, not given",
@@ -77,9 +75,7 @@ study = Study(
             ("none", "camera", "radio", "lie", "removed", "added"),
         ),
         Parameter("wrong", "share of wrong readings of the ray", 0.0, least=0.0, most=1.0),
-        Parameter(
-            "path", "of the leader (formation)", "straight", ("straight", "circle", "eight")
-        ),
+        Parameter("path", "of the leader (formation)", "straight", ("straight", "circle", "eight")),
         Parameter(
             "dt_ms", "largest physics timestep; it divides 0.1 s", 10.0, unit="ms", least=0.1
         ),

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from controllers.perimeter import ACQUIRE, MOVING, TRACKING
+from controllers.perimeter import ACQUIRE, MOVING
 from experiments.perimeter.sensing import AIM
 from experiments.perimeter.worlds import HALF
 from mjmr.geometry import rotate
@@ -31,7 +31,6 @@ class Log:
         self._states: list[np.ndarray] = []
         self._links: list[np.ndarray] = []
         self._agree: list[np.ndarray] = []
-        self._reach = scene.trucks.n > 0
         self._meter = None
         if condition["mode"] != "unicycle":
             from mjmr.metrics import ContactMeter
@@ -104,7 +103,8 @@ class Log:
         return {
             "all_track": bool(np.isfinite(joined[on]).all()),
             "tracking": int(np.isfinite(joined).sum()),
-            "last_joined_s": float(np.max(joined[on])) if np.isfinite(joined[on]).all()
+            "last_joined_s": float(np.max(joined[on]))
+            if np.isfinite(joined[on]).all()
             else float(self._condition["duration"]),
             "first_sensed_s": _number(first),
             "by_relay": int((told & np.isfinite(joined)).sum()),
@@ -120,6 +120,8 @@ class Log:
         error = np.array([scene.depth(s, t) for s, t in zip(spot, times, strict=True)])
         since = times[:, None] - team.joined
         tracks = (states >= ACQUIRE) & (since >= 0)
+        if self._failure.kind == "removed" and self._failure.robot >= 0:
+            tracks[:, self._failure.robot] = False  # it was carried
         steady = tracks & (since >= JOINED)
         centre = scene.lobes[:, :2].mean(axis=0)
         angle = np.unwrap(np.arctan2(*(poses[..., :2] - centre).transpose(2, 0, 1)[::-1]), axis=0)
@@ -145,7 +147,9 @@ class Log:
             gaps = np.diff(np.append(at, at[0] + 2 * np.pi)) * n / (2 * np.pi)
             ratio, least = float(gaps.max()), float(gaps.min())
         last = times >= times[-1] - STILL
-        way = np.hypot(*np.diff(poses[..., :2], axis=0).transpose(2, 0, 1)) / np.diff(times)[:, None]
+        way = (
+            np.hypot(*np.diff(poses[..., :2], axis=0).transpose(2, 0, 1)) / np.diff(times)[:, None]
+        )
         moving = (way > STOPPED)[:, on].any(axis=1)
         moved = np.flatnonzero(moving)
         return {
@@ -263,6 +267,3 @@ def _runs(times: Any, states: Any) -> str:
         starts = np.flatnonzero(np.append(True, row[1:] != row[:-1]))
         told.append(f"{i}:" + ",".join(f"{row[k]}@{times[k]:.1f}" for k in starts))
     return " ".join(told)
-
-
-assert TRACKING == ACQUIRE + 1  # measures take both as tracking

@@ -55,9 +55,7 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
             if known is not None:
                 command = team.step(known)
                 command[~failure.on] = 0.0
-                senses.radio.broadcast_arrays(
-                    team.speak(known).astype(np.float32), failure.speaks
-                )
+                senses.radio.broadcast_arrays(team.speak(known).astype(np.float32), failure.speaks)
             trucks.drive(command)
             if simulation.noted:
                 simulation.note(links=log.links())

@@ -27,8 +27,8 @@ class VisualArc(Sensor):
     """A fan of rays in place of a camera's columns, on every robot of a group.
 
     Each column tells the range of the nearest surface at one height and what kind of thing it is:
-    a robot, a prop that can be moved, a pillar, or what is fixed (walls, boxes). Which one of its kind is not
-    told, as by a camera that knows things by their colours. What is behind something else is
+    a robot, a prop that can be moved, a pillar, or what is fixed (walls, boxes). Which one of its
+    kind is not told, as by a camera that knows things by their colours. What is behind something else is
     hidden, what is lower than the plane is not seen, and the carrier does not see itself. The fan
     is level whatever the robot's tilt, and turns with the site it is at.
 
