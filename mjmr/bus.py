@@ -176,7 +176,7 @@ class Bus:
         self._plugged = self._with(self._plugged, name, rows, True)
 
     def fail(self, name: str, rows: ArrayLike) -> None:
-        """Let its self-test fail on robots ``rows``: it answers that it is unwell, sends nothing."""
+        """Let its self-test fail on robots ``rows``: it says so and sends nothing."""
         self._well = self._with(self._well, name, rows, False)
 
     def mend(self, name: str, rows: ArrayLike) -> None:

@@ -69,8 +69,10 @@ class Avoidance:
         return self._guard(found, state, near, body)
 
     def _rule(self, command: Array, state: NDArray[np.int64], near: Neighbours) -> Array:
-        """Rule 3, while searching and approaching: who approach each other both turn right; of two
-        that follow each other the one behind turns away.
+        """Rule 3, while searching and approaching.
+
+        Who approach each other both turn right; of two that go the same way the one behind turns
+        away.
         """
         c = self._config
         with np.errstate(invalid="ignore"):

@@ -75,7 +75,7 @@ class Spot(Sensor):
         self._kind = KINDS.index(kind)
 
     def read(self) -> Array:
-        """Newest look delivered by now, shape (n,): 1 if the kind is met, 0 if not, NaN at first."""
+        """Newest look delivered by now (n,): 1 if the kind is met, 0 if not, NaN at first."""
         return super().read()
 
     @property

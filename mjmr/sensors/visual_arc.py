@@ -28,9 +28,9 @@ class VisualArc(Sensor):
 
     Each column tells the range of the nearest surface at one height and what kind of thing it is:
     a robot, a prop that can be moved, a pillar, or what is fixed (walls, boxes). Which one of its
-    kind is not told, as by a camera that knows things by their colours. What is behind something else is
-    hidden, what is lower than the plane is not seen, and the carrier does not see itself. The fan
-    is level whatever the robot's tilt, and turns with the site it is at.
+    kind is not told, as by a camera that knows things by their colours. What is behind something
+    else is hidden, what is lower than the plane is not seen, and the carrier does not see itself.
+    The fan is level whatever the robot's tilt, and turns with the site it is at.
 
     Attributes:
         angles: Of the columns (c,) [rad] to the site's x axis, anticlockwise, increasing.
