@@ -67,7 +67,10 @@ class Boundary:
         inward_y = (south < c.wall_release) * 1.0 - (north < c.wall_release)
         error = wrap_angle(np.arctan2(inward_y, inward_x) - yaw)
         inward = (inward_x != 0) | (inward_y != 0)
+        # straight into a corner the way round takes 5.7 m towards one of its walls
+        corner = (inward_x != 0) & (inward_y != 0)
         with np.errstate(invalid="ignore"):
-            self.active = np.where(self.active, ~(near > c.wall_release), near < c.wall_trigger)
+            triggered = corner | (near < c.wall_trigger)
+            self.active = np.where(self.active, ~(near > c.wall_release), triggered)
         turn = np.where(inward & np.isfinite(error), np.clip(2.0 * error, -1.0, 1.0), 0.0)
         return np.column_stack([np.full(len(x), c.search_speed), c.top_turn * turn])

@@ -13,8 +13,8 @@ from mjmr.film_options import FilmOptions
 from mjmr.recording import Recording, record
 from mjmr.study import Study
 
-SECONDS = 240.0
-SPEED = 24.0  # simulated seconds a second, unless asked otherwise
+SECONDS = 150.0
+SPEED = 25.0  # simulated seconds a second, unless asked otherwise
 TRAIL = 60.0  # s
 _SEED = 0
 _EYE = 0  # truck whose camera is shown
@@ -29,7 +29,7 @@ def film(study: Study, path: Path, options: FilmOptions) -> None:
 def picture(study: Study, options: FilmOptions, seconds: float = SECONDS) -> Film:
     """The film, to be written or looked at."""
     condition = study.condition(
-        task="stay", start="bunch", growth=0.0125, estimated=True, sensing="camera",
+        task="stay", start="bunch", growth=0.0125, estimated=True,
         duration=seconds,
     )  # fmt: skip
     recording: Recording = record(study.bound_trial(), condition, _SEED)
@@ -39,7 +39,13 @@ def picture(study: Study, options: FilmOptions, seconds: float = SECONDS) -> Fil
     )
     made.add(recording, "lines: who hears whom by radio", trail=TRAIL)
     name = f"tamiya_txt1{_EYE}/eye"
-    made.add_eye(recording, name, f"camera of truck {_EYE}, and its red mask", mask, (160, 120))
+    made.add_eye(
+        recording,
+        name,
+        f"camera of truck {_EYE}, and its mask (tracking by rays)",
+        mask,
+        (160, 120),
+    )
     return made
 
 

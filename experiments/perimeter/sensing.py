@@ -44,14 +44,10 @@ def mount(scene: Scene, condition: Mapping[str, Any]) -> None:
         "arc",
     )  # fmt: skip
     both = condition["sensing"] == "both"
-    if condition["sensing"] != "rays":
-        trucks.mount(
-            Camera(
-                width=WIDTH, height=HEIGHT, rate=CAMERA_RATE, position=EYE, look_at=AIM,
-            ),
-            "eye",
-        )  # fmt: skip
-    if condition["sensing"] == "rays" or both:
+    # a camera whose pictures nobody reads costs nothing; films look through it
+    eye = Camera(width=WIDTH, height=HEIGHT, rate=CAMERA_RATE, position=EYE, look_at=AIM)
+    trucks.mount(eye, "eye")
+    if condition["sensing"] != "camera":
         trucks.mount(
             Spot(
                 position=EYE, target=AIM, rate=CAMERA_RATE if both else RATE,

@@ -59,7 +59,7 @@ def test_messages_arrive_and_have_an_age():
 
 def test_the_lowest_identifier_goes_first_and_the_rest_starve():
     # polls take two short frames a device every 0.25 s; one message of 8 bytes fits beside them
-    simulation, bus, source = setting(bit_rate=3500.0)
+    simulation, bus, source = setting(bit_rate=2600.0)
     for name, identifier in (("low", 0x300), ("high", 0x100), ("middle", 0x200)):
         attach(bus, source, name, identifier)
     run(simulation, bus, 10.0)

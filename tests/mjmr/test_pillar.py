@@ -11,7 +11,7 @@ from mjmr.sensors.visual_arc import PILLAR
 
 
 def hall(distance=3.0, radius=1.0, **options):
-    world = World.rectangle(20.0, 20.0, wall_height=0.6)
+    world = World.rectangle(40.0, 40.0, wall_height=0.6)
     world.add_pillar(distance + radius, 0.0, radius, **options)
     return world, world.add_group(TamiyaTXT1, [[0.0, 0.0, 0.0]])
 
