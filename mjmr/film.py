@@ -38,16 +38,26 @@ class Film:
         self.title, self.options = title, options or FilmOptions()
         self._panels: list[tuple[Any, ...]] = []
 
-    def add(self, shown: Recording | Footage, label: str = "", **changes: Any) -> None:
+    def add(
+        self,
+        shown: Recording | Footage,
+        label: str = "",
+        area: Sequence[float] | None = None,
+        **changes: Any,
+    ) -> None:
         """Add a panel to the right of those there are: what has been recorded by now.
 
         Args:
             shown: Recording or footage.
             label: Written in its corner.
+            area: What ``overview`` and ``corner`` show (xmin, ymin, xmax, ymax) [m] in place of the
+                whole world.
             changes: Of the film's options, for this panel: ``camera``, ``follow`` and
                 ``trail``.
         """
         footage = shown.footage() if isinstance(shown, Recording) else shown
+        if area is not None:
+            footage = dataclasses.replace(footage, bounds=np.array(area, dtype=np.float64))
         own = dataclasses.replace(self.options, **changes)
         self._panels.append((_Panel, footage, label, own))
 

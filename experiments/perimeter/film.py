@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controllers.perimeter.vision import red_mask, window
+from experiments.perimeter.sizes import GROWTH
+from experiments.perimeter.worlds import build
 from mjmr.film import Film
 from mjmr.film_options import FilmOptions
 from mjmr.recording import Recording, record
@@ -29,7 +31,7 @@ def film(study: Study, path: Path, options: FilmOptions) -> None:
 def picture(study: Study, options: FilmOptions, seconds: float = SECONDS) -> Film:
     """The film, to be written or looked at."""
     condition = study.condition(
-        task="stay", start="bunch", growth=0.0125, estimated=True,
+        task="stay", start="bunch", growth=GROWTH, estimated=True,
         duration=seconds,
     )  # fmt: skip
     recording: Recording = record(study.bound_trial(), condition, _SEED)
@@ -37,7 +39,12 @@ def picture(study: Study, options: FilmOptions, seconds: float = SECONDS) -> Fil
         f"Five trucks on a spill that grows{study.swapped}",
         dataclasses.replace(options, speed=options.speed or SPEED),
     )
-    made.add(recording, "lines: who hears whom by radio", trail=TRAIL)
+    x, y, radius = build(condition, _SEED).lobes[0]
+    half = radius + GROWTH * seconds + 2.5
+    made.add(
+        recording, "lines: who hears whom by radio", (x - half, y - half, x + half, y + half),
+        trail=TRAIL,
+    )  # fmt: skip
     name = f"tamiya_txt1{_EYE}/eye"
     made.add_eye(
         recording,
