@@ -66,7 +66,9 @@ class Bus:
     """One bus on each of n robots, all with the same kinds of devices.
 
     Devices publish; whoever is on the robot reads the newest message of a name. A device holds one
-    message: a sample that has not got through when the next one is there is lost, and counted.
+    message: of two samples one is lost, and counted, the older if none of it has been sent, else
+    the newer. From step to step the bus is handed out anew, so that of a long message the rest may
+    be overtaken.
 
     The manager asks every device four times a second whether it is there and well, by messages that
     go first. It reports what has not answered for half a second, so within one second, and what
@@ -76,7 +78,7 @@ class Bus:
         n: Robots.
         bit_rate: [bit/s].
         changes: All that the manager has reported, in order.
-        lost: Messages of each robot and device overtaken by a newer one (n, d).
+        lost: Samples of each robot and device that were never sent (n, d).
     """
 
     POLL = 0.25  # s, from question to question
@@ -107,7 +109,7 @@ class Bus:
         self._waiting = self._asked = np.zeros((self.n, 0))  # bits yet to be sent
         self._answered = self._sent_at = np.zeros((self.n, 0))
         self._outbox: list[Any] = []
-        self._outbox_at = np.zeros(0)
+        self._outbox_at = np.zeros((self.n, 0))
         self._inbox: list[Any] = []
         self._time, self._next_poll = simulation.time, simulation.time
         simulation.buses.append(self)
@@ -162,7 +164,7 @@ class Bus:
         self._sent_at = np.hstack([self._sent_at, np.full((self.n, 1), np.nan)])
         self.lost = np.hstack([self.lost, np.zeros((self.n, 1), dtype=np.int64)])
         self._outbox.append(None)
-        self._outbox_at = np.append(self._outbox_at, np.nan)
+        self._outbox_at = np.hstack([self._outbox_at, np.full((self.n, 1), np.nan)])
         self._inbox.append(None)
         self._order = np.argsort([device.identifier for device in self._devices])
 
@@ -240,8 +242,14 @@ class Bus:
                 raise InvalidInputError(
                     f"{device.name!r} must read {self.n} rows; got shape {values.shape}"
                 )
-            self._outbox[k], self._outbox_at[k] = values, at
-            self._waiting[:, k] = np.where(speaks, float(device.bits), 0.0)
+            if self._outbox[k] is None:
+                self._outbox[k] = np.full(values.shape, np.nan)
+            begun = (self._waiting[:, k] > 0) & (self._waiting[:, k] < device.bits)
+            taken = speaks & ~begun
+            self._outbox[k] = self._outbox[k].copy()
+            self._outbox[k][taken] = values[taken]
+            self._outbox_at[taken, k] = at
+            self._waiting[taken, k] = float(device.bits)
 
     def _deliver(self, arrived: Flags) -> None:
         for k in np.flatnonzero(arrived.any(axis=0)):
@@ -250,7 +258,7 @@ class Bus:
                 self._inbox[k] = np.full(values.shape, np.nan)
             self._inbox[k] = self._inbox[k].copy()
             self._inbox[k][arrived[:, k]] = values[arrived[:, k]]
-            self._sent_at[arrived[:, k], k] = self._outbox_at[k]
+            self._sent_at[arrived[:, k], k] = self._outbox_at[arrived[:, k], k]
 
     def _manage(self, time: float, answered: Flags) -> None:
         gone = time - self._answered > self.SILENCE

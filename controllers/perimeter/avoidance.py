@@ -13,6 +13,8 @@ from mjmr.geometry import wrap_angle
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+_MOVES = 0.05  # m/s
+_ASIDE = 0.35  # rad
 
 
 class Neighbours:
@@ -23,6 +25,7 @@ class Neighbours:
         bearing: From the robot's heading [rad].
         heading: The other's heading less the robot's [rad].
         state: The other's, NaN: not known.
+        speed: The other's, as it says [m/s], NaN: not known.
     """
 
     def __init__(self, pose: Array, heard: Array, fresh: Flags):
@@ -30,7 +33,7 @@ class Neighbours:
 
         Args:
             pose: Own poses (n, 3).
-            heard: Poses heard (n, n, 3) and states (n, n, 1), receiver first.
+            heard: Poses, states and speeds heard (n, n, 5), receiver first.
             fresh: What of it counts (n, n).
         """
         way = heard[..., :2] - pose[:, None, :2]
@@ -39,13 +42,14 @@ class Neighbours:
         self.bearing = wrap_angle(np.arctan2(way[..., 1], way[..., 0]) - pose[:, None, 2])
         self.heading = wrap_angle(heard[..., 2] - pose[:, None, 2])
         self.state = np.where(fresh, heard[..., 3], np.nan)
+        self.speed = np.where(fresh, heard[..., 4], np.nan)
 
 
 class Avoidance:
     """Changes commands where somebody is near.
 
     Attributes:
-        waiting: For how long each robot has been stopped by somebody ahead (n,) [s].
+        waiting: For how long each robot has been stopped by somebody ahead who stands (n,) [s].
     """
 
     def __init__(self, n: int, config: PerimeterConfig):
@@ -108,7 +112,10 @@ class Avoidance:
         self._clear = np.where(blocked, 0.0, self._clear + c.period)
         stopped = self._clear < c.hold
         passes = (mutual & goes_first).any(axis=1) & ~stopped
-        self.waiting = np.where(stopped, self.waiting + c.period, 0.0)
+        # who goes past is given the time for it
+        stands = (stopped_by & ~(near.speed > _MOVES)).any(axis=1) | unknown
+        waited = self.waiting + np.where(stands, c.period, 0.0)
+        self.waiting = np.where(stopped, waited, 0.0)
         # who has waited long enough goes round; on the perimeter one waits
         patient = self.waiting < c.patience
         around = stopped & ~patient & (state != TRACKING) & ~self._too_near(near, body)
@@ -118,7 +125,10 @@ class Avoidance:
         forward, turn = command.T
         forward = np.where(stopped, 0.0, np.where(passes, np.minimum(forward, c.pass_speed),
                                                   forward))  # fmt: skip
-        turn = np.where(stopped, 0.0, np.where(passes, -c.top_turn, turn))
+        # to the right, unless the other is there already
+        left = (bearing < -_ASIDE) & (state < ACQUIRE)
+        aside = np.where(left, c.top_turn, -c.top_turn)
+        turn = np.where(stopped, 0.0, np.where(passes, aside, turn))
         forward = np.where(around, c.pass_speed, forward)
         turn = np.where(around, away, turn)
         return np.column_stack([forward, turn])

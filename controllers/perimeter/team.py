@@ -17,7 +17,7 @@ from mjmr.geometry import rotate
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-_SPEAKERS = [percepts.X, percepts.Y, percepts.YAW, percepts.STATE]
+_SPEAKERS = [percepts.X, percepts.Y, percepts.YAW, percepts.STATE, percepts.SPEED]
 
 
 class PerimeterTeam:
@@ -95,7 +95,7 @@ class PerimeterTeam:
         relay = self.relay
         at = np.where(relay.origin >= 0, relay.told_at, np.nan)
         return np.column_stack(
-            [now.pose, self.state, relay.place, at, relay.origin, relay.hops,
+            [now.pose, self.state.astype(np.float64), relay.place, at, relay.origin.astype(np.float64), relay.hops.astype(np.float64),
              self._circles.radius, self._speed]
         )  # fmt: skip
 

@@ -156,13 +156,14 @@ def test_a_stopped_robot_makes_one_zigzag_when_the_edge_is_deep_inside():
     assert speed(-0.01, 0.0) == 0.0
 
 
-def neighbours(pose, state):
+def neighbours(pose, state, speed=None):
     n = len(pose)
-    heard = np.tile(np.column_stack([pose, state])[None], (n, 1, 1))
+    told = np.column_stack([pose, state, np.zeros(n) if speed is None else speed])
+    heard = np.tile(told[None], (n, 1, 1))
     return Neighbours(pose, heard, ~np.eye(n, dtype=bool))
 
 
-@pytest.mark.parametrize("offset", [-0.8, 0.0, 0.5])
+@pytest.mark.parametrize("offset", [-1.8, -0.8, 0.0, 0.5, 1.8])
 def test_two_who_meet_head_on_do_not_touch(offset):
     avoidance = Avoidance(2, CONFIG)
     pose, least = np.array([[-10.0, 0.0, 0.0], [10.0, offset, np.pi]]), np.inf
@@ -170,7 +171,7 @@ def test_two_who_meet_head_on_do_not_touch(offset):
     speed = np.ones(2)
     for _ in range(400):
         wanted = np.array([[1.0, 0.0], [1.0, 0.0]])
-        command = avoidance.apply(wanted, state, neighbours(pose, state), nobody)
+        command = avoidance.apply(wanted, state, neighbours(pose, state, speed), nobody)
         speed = speed + np.clip(command[:, 0] - speed, -0.1, 0.1)  # as a truck brakes
         turn = np.clip(command[:, 1], -1.7 * speed, 1.7 * speed)
         pose = drive(pose, np.column_stack([speed, turn]))
