@@ -94,10 +94,8 @@ class PerimeterTeam:
         """What each robot broadcasts (n, c), columns ``SPOKEN``."""
         relay = self.relay
         at = np.where(relay.origin >= 0, relay.told_at, np.nan)
-        return np.column_stack(
-            [now.pose, self.state.astype(np.float64), relay.place, at, relay.origin.astype(np.float64), relay.hops.astype(np.float64),
-             self._circles.radius, self._speed]
-        )  # fmt: skip
+        spoken = [now.pose, self.state, relay.place, at, relay.origin, relay.hops]
+        return np.column_stack([*spoken, self._circles.radius, self._speed]).astype(np.float64)
 
     def tell(self, who: Flags, place: Array, time: float) -> None:
         """An operator tells robots ``who`` (n,) that a perimeter is at ``place`` (2,)."""

@@ -70,7 +70,8 @@ def test_restoring_a_snapshot_restores_the_radius():
 def test_pictures_show_the_same_edge_as_rays():
     world, trucks = hall(distance=4.0, radius=3.0, growth=0.1, limit=4.5)
     eye = trucks.mount(
-        Camera(width=160, height=120, rate=2.0, position=(0.1, 0.1, 0.42), look_at=(3.5, 0.0, 0.0))
+        Camera(width=160, height=120, rate=2.0, position=(0.1, 0.1, 0.42), look_at=(3.5, 0.0, 0.0)),
+        "eye",
     )
     spot = trucks.mount(Spot(position=(0.1, 0.1, 0.42), target=(3.5, 0.0, 0.0), rate=2.0))
     simulation = Simulation(world, control_period=0.1, dt_max=0.01)
