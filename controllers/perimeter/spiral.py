@@ -7,6 +7,7 @@ from controllers.perimeter.config import PerimeterConfig
 from mjmr.geometry import wrap_angle
 
 Array = NDArray[np.float64]
+_NEARLY = 0.5  # rad, off the way inwards, from which on a turn is not reversed
 
 
 class Spiral:
@@ -50,6 +51,7 @@ class Boundary:
         """Args: n: How many robots. config: With the boundary."""
         self._config = config
         self.active = np.zeros(n, dtype=bool)
+        self._sense = np.ones(n)
 
     def command(self, pose: Array) -> Array:
         """(forward, turn) (n, 2) of those who are ``active``, which is updated.
@@ -62,15 +64,22 @@ class Boundary:
         x, y, yaw = pose.T
         west, east, south, north = x - x0, x1 - x, y - y0, y1 - y
         near = np.minimum.reduce([west, east, south, north])
-        # what is within the release distance counts, so that a corner's second wall does
-        inward_x = (west < c.wall_release) * 1.0 - (east < c.wall_release)
-        inward_y = (south < c.wall_release) * 1.0 - (north < c.wall_release)
+        beside = 1.25 * c.wall_release
+        # what is within a little more than the release distance counts: a corner's second wall
+        inward_x = (west < beside) * 1.0 - (east < beside)
+        inward_y = (south < beside) * 1.0 - (north < beside)
         error = wrap_angle(np.arctan2(inward_y, inward_x) - yaw)
         inward = (inward_x != 0) | (inward_y != 0)
         # straight into a corner the way round takes 5.7 m towards one of its walls
-        corner = (inward_x != 0) & (inward_y != 0)
+        corner = np.minimum(west, east) < c.wall_release
+        corner &= np.minimum(south, north) < c.wall_release
         with np.errstate(invalid="ignore"):
             triggered = corner | (near < c.wall_trigger)
-            self.active = np.where(self.active, ~(near > c.wall_release), triggered)
-        turn = np.where(inward & np.isfinite(error), np.clip(2.0 * error, -1.0, 1.0), 0.0)
+            was = self.active
+            self.active = np.where(was, ~(near > c.wall_release), triggered)
+            # a corner's other wall, met while turning, must not turn it back towards the first
+            self._sense = np.where(was, self._sense, np.where(error < 0, -1.0, 1.0))
+            against = (error * self._sense < 0) & (np.abs(error) > _NEARLY)
+        turn = np.where(against, self._sense, np.clip(2.0 * error, -1.0, 1.0))
+        turn = np.where(inward & np.isfinite(error), turn, 0.0)
         return np.column_stack([np.full(len(x), c.search_speed), c.top_turn * turn])
