@@ -71,8 +71,7 @@ class Boundary:
         error = wrap_angle(np.arctan2(inward_y, inward_x) - yaw)
         inward = (inward_x != 0) | (inward_y != 0)
         # straight into a corner the way round takes 5.7 m towards one of its walls
-        corner = np.minimum(west, east) < c.wall_release
-        corner &= np.minimum(south, north) < c.wall_release
+        corner = (inward_x != 0) & (inward_y != 0)
         with np.errstate(invalid="ignore"):
             triggered = corner | (near < c.wall_trigger)
             was = self.active
