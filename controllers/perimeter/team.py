@@ -111,7 +111,8 @@ class PerimeterTeam:
         desired = np.where(np.isfinite(self.desired), self.desired, np.inf)
         wanted = np.where(np.isfinite(desired), desired, 1e3)
         forward = spacing(apart, near.bearing, wanted, c)
-        forward = self._zigzag.speeds(forward, error, now.inside, tracks)
+        joins = tracks & (self.entered == now.time)
+        forward = self._zigzag.speeds(forward, error, now.inside, tracks, joins)
         return np.column_stack([forward, bang_bang(now.inside, forward, c)])
 
     def _estimate(self, now: Percepts, others: Flags) -> None:

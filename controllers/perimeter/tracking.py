@@ -51,9 +51,12 @@ def spacing(apart: Array, bearing: Array, desired: Array, config: PerimeterConfi
 
 
 class Zigzag:
-    """Lets a stopped robot follow an edge that grows: one whole zigzag once it is deep inside.
+    """Keeps a robot at track speed until it has crossed the edge so many times and is inside.
 
-    Otherwise it resumes at every touch and winds away from the perimeter (our check).
+    A stopped robot that a growing edge has got deep into makes one whole zigzag (in, out, in):
+    otherwise it resumes at every touch and winds away from the perimeter (our check). One that has
+    just begun to track makes two, so that it does not stop where it took over, beside the edge
+    (ours).
 
     Attributes:
         active: Who is at it (n,).
@@ -63,9 +66,11 @@ class Zigzag:
         """Args: n: How many robots. config: With the depth."""
         self._config = config
         self.active = np.zeros(n, dtype=bool)
-        self._been_out = np.zeros(n, dtype=bool)
+        self._crossings = np.zeros(n, dtype=np.int64)  # still to be made
+        self._was = np.full(n, np.nan)
 
-    def speeds(self, speed: Array, error: Array, inside: Array, tracks: Flags) -> Array:
+    def speeds(self, speed: Array, error: Array, inside: Array, tracks: Flags, joins: Flags
+               ) -> Array:  # fmt: skip
         """Speeds (n,): track speed for who is at it, ``speed`` for the others.
 
         Args:
@@ -73,11 +78,16 @@ class Zigzag:
             error: Of :func:`controllers.perimeter.approach.edge_errors` (n,) [m].
             inside: (n,).
             tracks: Who tracks (n,).
+            joins: Who does since this step (n,).
         """
         with np.errstate(invalid="ignore"):
             deep = (error < -self._config.resume_depth) & (inside > 0.5)
+            crossed = np.abs(inside - self._was) > 0.5
         begins = tracks & (speed == 0.0) & deep & ~self.active
-        self._been_out = np.where(begins, False, self._been_out | (inside < 0.5))
-        done = self._been_out & (inside > 0.5)
-        self.active = tracks & (begins | (self.active & ~done))
+        left = self._crossings - crossed
+        left = np.where(begins, 2, left)
+        self._crossings = np.where(joins, 4, left)
+        done = (self._crossings <= 0) & (inside > 0.5)
+        self.active = tracks & (begins | joins | (self.active & ~done))
+        self._was = np.where(np.isfinite(inside), inside, self._was)
         return np.where(self.active, self._config.track_speed, speed)

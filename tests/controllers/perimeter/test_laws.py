@@ -146,7 +146,7 @@ def test_a_stopped_robot_makes_one_zigzag_when_the_edge_is_deep_inside():
     still, tracks = np.zeros(1), np.array([True])
 
     def speed(error, is_inside):
-        return zigzag.speeds(still, np.array([error]), np.array([is_inside]), tracks)[0]
+        return zigzag.speeds(still, np.array([error]), np.array([is_inside]), tracks, ~tracks)[0]
 
     assert speed(-0.1, 1.0) == 0.0
     assert speed(-0.16, 1.0) == 0.4
@@ -260,3 +260,13 @@ def test_wrong_numbers_are_refused():
         PerimeterConfig(bounds=BOUNDS, desired=-1.0)
     with pytest.raises(InvalidInputError, match="disc"):
         tracked_radius(0.4)
+
+
+def test_who_joins_crosses_the_edge_four_times_before_it_may_stop():
+    zigzag = Zigzag(1, CONFIG)
+    yes, no, still = np.array([True]), np.array([False]), np.zeros(1)
+    told = []
+    for k, inside_now in enumerate([0, 0, 1, 1, 0, 1, 0, 0, 1, 1]):
+        seen = np.array([float(inside_now)])
+        told.append(zigzag.speeds(still, np.zeros(1), seen, yes, yes if k == 0 else no)[0])
+    assert told == [0.4] * 5 + [0.4] * 3 + [0.0] * 2
