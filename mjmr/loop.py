@@ -258,7 +258,7 @@ class TickedSimulation(ABC):
         which, where = check_lift(group, rows, poses)
         if not len(which):
             return
-        self.world.check_inside(group, which, where)
+        self.world.check_inside(group, which, where, "are put down")
         self._lift(group, which, where)
         group.halt(which)
         first = self.team.rows(group).start

@@ -21,7 +21,8 @@ class Mark:
         rgba: Colour, 0 to 1.
 
     Raises:
-        InvalidInputError: Neither a radius nor both sides, both, or one that is not positive.
+        InvalidInputError: Neither a radius nor both sides, both, or a number that is not positive
+            where it is a size, or not finite.
     """
 
     x: float
@@ -35,10 +36,18 @@ class Mark:
     def __post_init__(self):
         sides = [s for s in (self.radius, self.length, self.width) if s is not None]
         disc = self.radius is not None
-        if len(sides) != (1 if disc else 2) or not np.all(np.array(sides) > 0):
+        sizes = np.array(sides)
+        good = np.isfinite(sizes).all() and (sizes > 0).all()
+        if len(sides) != (1 if disc else 2) or not good:
             raise InvalidInputError(
-                "a mark has a positive radius, or a positive length and width; got radius "
+                "a mark has a positive radius, or a positive length and width, finite; got radius "
                 f"{self.radius}, length {self.length}, width {self.width}"
+            )
+
+        if not np.isfinite([self.x, self.y, self.yaw, *self.rgba]).all():
+            raise InvalidInputError(
+                f"a mark's place, yaw and colour must be finite; got ({self.x}, {self.y}), "
+                f"{self.yaw} and {self.rgba}"
             )
 
     @property

@@ -157,21 +157,21 @@ class _Checker:
         return office
 
     def _error(self, key: str, index: int | None, words: str) -> InvalidInputError:
-        line = self._line(key, index)
+        line = self._line(key, *([] if index is None else [index]))
         entry = key if index is None else f"{key.removesuffix('s')} {index}"
         where = f" (line {line})" if line else ""
         return InvalidInputError(f"office {self.file}: {entry}{where} {words}")
 
-    def _line(self, key: str, index: int | None) -> int | None:
-        """Line of the file, from 1, that an entry begins on."""
-        found = re.search(rf'"{key}"\s*:\s*\[?', self.text)
+    def _line(self, key: str, *indices: int) -> int | None:
+        """Line of the file, from 1, that an entry begins on, or one of a list in it."""
+        found = re.search(rf'"{key}"\s*:\s*', self.text)
         if found is None:
             return None
-        at = found.end()
-        decoder = json.JSONDecoder()
-        for _ in range(index or 0):
-            at = decoder.raw_decode(self.text, self._skip(at))[1]
-        at = found.start() if index is None else self._skip(at)
+        at = found.end() if indices else found.start()
+        for index in indices:
+            at = self._skip(at + 1)  # past the bracket
+            for _ in range(index):
+                at = self._skip(json.JSONDecoder().raw_decode(self.text, at)[1])
         return self.text.count("\n", 0, at) + 1
 
     def _skip(self, at: int) -> int:
@@ -186,11 +186,8 @@ class _Checker:
         return found
 
     def _numbers(self, key: str, value: Any, count: int, index: int | None = None) -> Array:
-        try:
-            row = np.asarray(value, dtype=np.float64)
-        except (TypeError, ValueError):
-            row = np.empty(0)
-        if row.shape != (count,) or not np.isfinite(row).all():
+        row = _row(value, count)
+        if row is None:
             raise self._error(key, index, f"must be {count} numbers, not {value!r}")
         return row
 
@@ -226,10 +223,16 @@ class _Checker:
         return np.array(rooms), np.array(goals)
 
     def _route(self, index: int, route: Any) -> Array:
-        points = [self._numbers("routes", p, 2, index) for p in route or []]
-        if len(points) < 2:
-            raise self._error("routes", index, "needs two waypoints or more")
-        return np.array(points)
+        if not isinstance(route, list) or len(route) < 2:
+            raise self._error("routes", index, f"needs two waypoints or more, not {route!r}")
+        for k, point in enumerate(route):
+            if _row(point, 2) is None:
+                line = self._line("routes", index, k)
+                raise self._error(
+                    "routes", index,
+                    f"has waypoint {k} (line {line}), which must be 2 numbers, not {point!r}",
+                )  # fmt: skip
+        return np.array(route, dtype=np.float64)
 
     def _walls_fit(self, office: Office) -> None:
         whole = box(-_TOUCH, -_TOUCH, *(office.size + _TOUCH))
@@ -315,3 +318,12 @@ class _Checker:
                     f"{told}: wall {near} (line {self._line('walls', near)}) is nearer than "
                     f"{clearance:g} m",
                 )  # fmt: skip
+
+
+def _row(value: Any, count: int) -> Array | None:
+    """The numbers (count,), or None if that is not what is given."""
+    try:
+        row = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        return None
+    return row if row.shape == (count,) and np.isfinite(row).all() else None

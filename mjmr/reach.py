@@ -19,7 +19,7 @@ Flags = NDArray[np.bool_]
 
 
 class Reach:
-    """Reach within a simulation's team, computed once a physics step."""
+    """Reach within a simulation's team, computed once a physics step and again after a lift."""
 
     def __init__(
         self,
@@ -45,6 +45,7 @@ class Reach:
         self._simulation, self._team, self._visible = simulation, simulation.team, visible
         n = self._team.n
         self._step, self._flags = -1, np.zeros((n, n), dtype=bool)
+        simulation.lift_followers.append(lambda rows, poses: self.forget())
 
     def now(self) -> Flags:
         """Who can hear whom now (n, n), sender first; not to be written to."""
@@ -67,7 +68,7 @@ class Reach:
         return self._flags
 
     def forget(self) -> None:
-        """Compute it anew when asked next: the simulation was put back."""
+        """Compute it anew when asked next: the simulation was put back, or robots were lifted."""
         self._step = -1
 
     def faulty(self, kind: str, time: float) -> Flags | None:

@@ -189,7 +189,8 @@ class Simulation(TickedSimulation):
     def _lift(self, group: "Group", rows: Any, poses: Array) -> None:
         if id(group) not in self._lifters:
             self._lifters[id(group)] = Lifter(self.model, group, self._drives[id(group)])
-        before = self._physics_state()
+        # a state vector does not say who sleeps: refused, a lift wakes nobody
+        before = copy.copy(self.data) if self._sleeps else self._physics_state()
         self._lifters[id(group)].put_down(self.data, rows, poses)
         self._set_physics_state(self._physics_state())  # contacts are those of the new places
         if not self.world.overlap:
@@ -254,7 +255,7 @@ class Simulation(TickedSimulation):
         self.last_second.keep(self.step * self.timestep)
         self._ticks_done += 1
         if self._ticks_done % 6 == 0:
-            self._history.append(super().snapshot())
+            self._history.append(self.snapshot())
 
     def _divergence(self, wrong: str = "") -> SimulationDivergedError:
         data = self.data

@@ -198,16 +198,30 @@ class World:
             options: ``height`` and ``material``; see :class:`Box`.
 
         Raises:
-            InvalidInputError: Start and end are one point, or an option is out of range.
+            InvalidInputError: Start and end are one point or none, or an option is out of range.
         """
-        (x0, y0), (x1, y1) = np.asarray(start, float), np.asarray(end, float)
+        if not 0 < thickness < np.inf:
+            raise InvalidInputError(
+                f"a wall's thickness must be positive and finite; got {thickness} m"
+            )
+        (x0, y0), (x1, y1) = _point(start, "a wall's start"), _point(end, "a wall's end")
         length = float(np.hypot(x1 - x0, y1 - y0))
         yaw = float(np.arctan2(y1 - y0, x1 - x0))
         return self.add_box((x0 + x1) / 2, (y0 + y1) / 2, length, thickness, yaw=yaw, **options)
 
     def add_mark(self, x: float, y: float, **options: Any) -> Mark:
-        """Paint a disc or rectangle on the floor; see :class:`mjmr.mark.Mark` for the options."""
+        """Paint a disc or rectangle on the floor; see :class:`mjmr.mark.Mark` for the options.
+
+        Raises:
+            InvalidInputError: Its centre is outside the walls, or a mark cannot be so.
+        """
         mark = Mark(x=x, y=y, **options)
+        xmin, ymin, xmax, ymax = self.bounds
+        if not (xmin <= x <= xmax and ymin <= y <= ymax):
+            raise InvalidInputError(
+                f"a mark's centre must lie within the walls, x {xmin:g} to {xmax:g} and y {ymin:g} "
+                f"to {ymax:g} m; got ({x:g}, {y:g})"
+            )
         self.marks.append(mark)
         return mark
 
@@ -450,13 +464,16 @@ class World:
                 f"{low[1]:g} to {high[1]:g} m"
             )
 
-    def check_inside(self, group: Group, rows: ArrayLike, poses: ArrayLike) -> None:
+    def check_inside(
+        self, group: Group, rows: ArrayLike, poses: ArrayLike, what: str = "start"
+    ) -> None:
         """Refuse places of robots of a group that are not within the walls.
 
         Args:
             group: Whose robots.
             rows: Their indices in the group (k,).
             poses: Where they are to be (k, 3), world frame.
+            what: They do there, for the message.
 
         Raises:
             InvalidInputError: Says who would be outside, and by how much.
@@ -471,12 +488,22 @@ class World:
                 if off > 0
             )
             raise InvalidInputError(
-                f"these robots start outside the walls or touch them: {names}; centres must lie "
+                f"these robots {what} outside the walls or touch them: {names}; centres must lie "
                 f"within x {low[0]:g} to {high[0]:g} and y {low[1]:g} to {high[1]:g} m"
             )
 
     def _check_inside(self, group: Group) -> None:
         self.check_inside(group, range(group.n), group.start)
+
+
+def _point(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    try:
+        point = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        point = np.empty(0)
+    if point.shape != (2,) or not np.isfinite(point).all():
+        raise InvalidInputError(f"{name} must be two finite numbers (x, y); got {values}")
+    return point
 
 
 def _rectangle(values: ArrayLike, name: str) -> NDArray[np.float64]:

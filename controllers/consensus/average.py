@@ -29,7 +29,7 @@ class AverageConsensus:
         self.rounds = 0
 
     def step(self, linked: ArrayLike) -> Array:
-        """One round over the links (n, n) there are now; the new estimates."""
+        """One round over the links (n, n) there are now; the new estimates, a copy."""
         gains = metropolis_gains(linked)
         if len(gains) != len(self.estimate):
             raise InvalidInputError(
@@ -37,4 +37,4 @@ class AverageConsensus:
             )
         self.estimate = np.tensordot(gains, self.estimate, axes=1)
         self.rounds += 1
-        return self.estimate
+        return self.estimate.copy()

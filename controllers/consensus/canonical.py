@@ -10,13 +10,14 @@ Here channels are the last axis and stages of all systems are stacked: robots wi
 relative degrees fit side by side.
 """
 
+import functools
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import expm
 
-from controllers.consensus.gains import check_gains
+from controllers.consensus.gains import as_array, check_gains
 from mjmr.errors import InvalidInputError
 
 Array = NDArray[np.float64]
@@ -101,9 +102,12 @@ class CanonicalModel:
         Args:
             gains: Of that channel (q, q).
             duration: t [s].
+
+        Returns:
+            Not to be written to: it is kept for the next time.
         """
         table = self.expanded(gains)
-        return np.asarray(expm((table - np.eye(len(table))) * duration), dtype=np.float64)
+        return _exponential(table.tobytes(), len(table), float(duration))
 
     def advance(self, state: Array, gains: ArrayLike, duration: float) -> Array:
         """State after the gains were constant for a time, exactly.
@@ -112,22 +116,48 @@ class CanonicalModel:
             state: Stacked (sum l, m).
             gains: (q, q) for all channels alike, or (m, q, q).
             duration: [s].
+
+        Raises:
+            InvalidInputError: A state or gains of another shape, or gains that cannot be.
         """
-        g = np.asarray(gains, dtype=np.float64)
+        state = self._state(state)
+        g = self._gains(gains, state.shape[1])
         if g.ndim == 2:
             return self.transition(g, duration) @ state
-        if len(g) != state.shape[1]:
-            raise InvalidInputError(
-                f"gains of {state.shape[1]} channels have shape (m, q, q); got {g.shape}"
-            )
         columns = [self.transition(own, duration) @ state[:, s] for s, own in enumerate(g)]
         return np.stack(columns, axis=1)
 
     def input_of(self, state: Array, gains: ArrayLike) -> Array:
-        """u_i = sum_j G_ij y_j (q, m) in a state; gains as in :meth:`advance`."""
-        y = state[self.outputs]
-        g = np.asarray(gains, dtype=np.float64)
+        """u_i = sum_j G_ij y_j (q, m) in a state; gains and errors as in :meth:`advance`."""
+        y = self._state(state)[self.outputs]
+        g = self._gains(gains, y.shape[1])
+        for own in g if g.ndim == 3 else g[None]:
+            check_gains(own, self.q)
         return g @ y if g.ndim == 2 else np.einsum("sij,js->is", g, y)
+
+    def _state(self, state: ArrayLike) -> Array:
+        given, size = as_array(state, np.float64, "states"), int(self.degrees.sum())
+        if given.ndim != 2 or len(given) != size:
+            raise InvalidInputError(f"a stacked state has shape ({size}, m); got {given.shape}")
+        return given
+
+    def _gains(self, gains: ArrayLike, channels: int) -> Array:
+        g, q = as_array(gains, np.float64, "gains"), self.q
+        if g.shape not in ((q, q), (channels, q, q)):
+            raise InvalidInputError(
+                f"gains of {channels} channels have shape ({q}, {q}) or ({channels}, {q}, {q}); "
+                f"got {g.shape}"
+            )
+        return g
+
+
+@functools.lru_cache(maxsize=64)
+def _exponential(table: bytes, size: int, duration: float) -> Array:
+    """exp(-(I - D) t) of the bytes of D (size, size)."""
+    rates = np.frombuffer(table).reshape(size, size) - np.eye(size)
+    found = np.asarray(expm(rates * duration), dtype=np.float64)
+    found.setflags(write=False)
+    return found
 
 
 def spread(positions: ArrayLike) -> float:

@@ -14,6 +14,18 @@ Flags = NDArray[np.bool_]
 _SUM_TOLERANCE = 1e-9
 
 
+def as_array(values: ArrayLike, dtype: type, what: str) -> NDArray:
+    """An array of its own.
+
+    Raises:
+        InvalidInputError: Ragged rows, or entries that are no numbers.
+    """
+    try:
+        return np.array(values, dtype=dtype)
+    except (TypeError, ValueError) as e:
+        raise InvalidInputError(f"{what} are numbers in rows of one length") from e
+
+
 def check_gains(gains: ArrayLike, q: int | None = None, heard: ArrayLike | None = None) -> Array:
     """Gains (q, q) as an array, if they are what the theory asks for.
 
@@ -26,7 +38,7 @@ def check_gains(gains: ArrayLike, q: int | None = None, heard: ArrayLike | None 
         InvalidInputError: Another shape, a negative entry, a row that does not sum to one, or a
             weight of somebody who is not heard; says which.
     """
-    g = np.asarray(gains, dtype=np.float64)
+    g = as_array(gains, np.float64, "gains")
     if g.ndim != 2 or g.shape[0] != g.shape[1] or (q is not None and len(g) != q):
         size = "(q, q)" if q is None else f"({q}, {q})"
         raise InvalidInputError(f"gains have shape {size}; got {g.shape}")
@@ -53,7 +65,7 @@ def graph(heard: ArrayLike, q: int | None = None) -> Flags:
     Raises:
         InvalidInputError: Another shape.
     """
-    flags = np.array(heard, dtype=bool)
+    flags = as_array(heard, bool, "the flags of a graph")
     if flags.ndim != 2 or flags.shape[0] != flags.shape[1] or (q is not None and len(flags) != q):
         size = "(q, q)" if q is None else f"({q}, {q})"
         raise InvalidInputError(f"a graph has shape {size}; got {flags.shape}")

@@ -7,6 +7,7 @@ one becomes v_i = -2 w_i + sum_j g_ij (p_j - p_i); derived from Qu, Wang and Hul
 import numpy as np
 from numpy.typing import NDArray
 
+from controllers.consensus.gains import check_gains
 from mjmr.errors import InvalidInputError
 
 Array = NDArray[np.float64]
@@ -21,7 +22,7 @@ def acceleration(velocity: Array, relative: Array, gains: Array) -> Array:
         gains: (n, n), rows summing to one; weights of those not seen count as the robot's own.
 
     Raises:
-        InvalidInputError: Shapes that do not fit.
+        InvalidInputError: Shapes that do not fit, or gains that cannot be.
     """
     n = len(velocity)
     if relative.shape != (n, n, velocity.shape[1]) or gains.shape != (n, n):
@@ -30,7 +31,7 @@ def acceleration(velocity: Array, relative: Array, gains: Array) -> Array:
             f"got {relative.shape} and {gains.shape}"
         )
     seen = np.nan_to_num(relative, nan=0.0)
-    return -2.0 * velocity + np.einsum("ij,ijm->im", gains, seen)
+    return -2.0 * velocity + np.einsum("ij,ijm->im", check_gains(gains, n), seen)
 
 
 def offset_relative(relative: Array, offsets: Array) -> Array:

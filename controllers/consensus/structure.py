@@ -15,7 +15,7 @@ import networkx as nx
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from controllers.consensus.gains import check_gains, graph
+from controllers.consensus.gains import as_array, check_gains, graph
 from mjmr.errors import InvalidInputError
 
 
@@ -100,8 +100,8 @@ def check_structure(
         epsilon: What gains must not fall below to count.
 
     Raises:
-        InvalidInputError: Sequences of different lengths, an epsilon that is not positive, or
-            gains that cannot be.
+        InvalidInputError: Sequences of different lengths, graphs of different sizes, an epsilon
+            that is not positive, or gains that cannot be.
     """
     if len(graphs) != len(gains) or not len(graphs):
         raise InvalidInputError(
@@ -109,6 +109,10 @@ def check_structure(
         )
     if not epsilon > 0:
         raise InvalidInputError(f"epsilon must be positive; got {epsilon}")
+    sizes = {len(graph(heard)) for heard in graphs}
+    if len(sizes) > 1:
+        told = " and ".join(map(str, sorted(sizes)))
+        raise InvalidInputError(f"all graphs are of the same systems; got graphs of {told}")
     by_order: dict[tuple[int, ...], list[int]] = {}
     first_reason = ""
     for k, (heard, weights) in enumerate(zip(graphs, gains, strict=True)):
@@ -128,7 +132,7 @@ def check_structure(
 
 def _least(weights: ArrayLike, heard: ArrayLike) -> NDArray[np.float64]:
     """The least gain over the channels (q, q), each channel checked."""
-    given = np.asarray(weights, dtype=np.float64)
+    given = as_array(weights, np.float64, "gains")
     channels = given[None] if given.ndim == 2 else given
     return np.min([check_gains(g, heard=heard) for g in channels], axis=0)
 

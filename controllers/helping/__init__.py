@@ -4,8 +4,6 @@ Robot 0 explores: it has goals one after another and a weak local planner. The o
 stand; they tell it whether they see, have seen, or can relay sight of its goal (goal-sharing), and
 whether they are in trouble themselves (state-sharing).
 
-* :class:`HelpingTeam` is the method for callers that sense by themselves, one robot's body each:
-  see its module for the five calls of a step.
 * :mod:`controllers.helping.point_team` is the paper's own simulation of point robots, compiled.
 * The parts are modules of compiled functions over named tuples of arrays: ``goal_sharing``,
   ``state_sharing``, ``explorer`` (what goes first), ``frames`` (mutual bearings), ``visibility``,
@@ -16,9 +14,8 @@ Source: A. Sgorbissa and R. C. Arkin, Local Navigation Strategies for a Team of 
 """
 
 from controllers.helping.explorer import GOAL, MATE, OFFER, PLAN, PLANNERS, Settings
-from controllers.helping.goal_sharing import CHAIN, LITERAL
+from controllers.helping.goal_sharing import CHAIN, LITERAL, READINGS
 from controllers.helping.planners import AvoidPast, PotentialField, VisBug
-from controllers.helping.team import READINGS, HelpingTeam, Points
 from controllers.helping.visibility import RAYS, Walls
 
 __all__ = [
@@ -32,8 +29,6 @@ __all__ = [
     "RAYS",
     "READINGS",
     "AvoidPast",
-    "HelpingTeam",
-    "Points",
     "PotentialField",
     "Settings",
     "VisBug",

@@ -26,7 +26,8 @@ class Settings(NamedTuple):
         step: Way of one motion step [m].
         sight: How far robots and goals are seen [m].
         epsilon: A goal is reached when nearer than this [m].
-        arrive: A ghost is reached when nearer than this [m].
+        arrive: A ghost is reached when nearer than this [m]. For points hardly more than they keep
+            from walls: a corner may hide from a millimetre short of a ghost what is seen from it.
         closer: Progress is a distance smaller by this [m].
         patience: Steps without progress after which an offer is dropped.
         level: Cr.
@@ -43,7 +44,7 @@ class Settings(NamedTuple):
     step: float = 0.15
     sight: float = 8.0
     epsilon: float = 0.3
-    arrive: float = 0.001
+    arrive: float = 1e-5
     closer: float = 0.075
     patience: int = 10
     level: int = 20

@@ -2,7 +2,7 @@
 
 State is a :class:`Memory`, arrays over (robot, owner of the goal); what an owner makes of what it
 is offered is an :class:`Offers`. Both are plain named tuples of arrays that compiled functions
-fill in place; :class:`controllers.helping.GoalSharing` wraps them for callers in Python.
+fill in place.
 
 Two readings, told apart by ``Memory.path.shape[2]``, the ghosts a robot remembers:
 
@@ -23,6 +23,7 @@ from controllers.helping.frames import to_mine
 from mjmr.jit import njit
 
 LITERAL, CHAIN = 1, 96
+READINGS = {"literal": LITERAL, "chain": CHAIN}
 _LESS = 1e-9  # m: a promise must be shorter by this
 
 

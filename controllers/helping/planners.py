@@ -115,6 +115,3 @@ class VisBug:
 
 class Published:
     """Stands for whichever of the paper's planners a condition names; loops have it compiled."""
-
-
-CLASSES = {"avoid-past": AvoidPast, "visbug": VisBug, "potential-field": PotentialField}

@@ -46,7 +46,6 @@ class Options(NamedTuple):
     """What a run has of the method and its faults.
 
     Args:
-        shares_goals: Whether robots share goals.
         shares_state: Whether the explorer goes to mates when in trouble.
         noisy: Whether distances and bearings of mates are misperceived.
         err_max: Largest relative error of a distance.
@@ -54,7 +53,6 @@ class Options(NamedTuple):
         drop: Share of messages lost.
     """
 
-    shares_goals: bool = True
     shares_state: bool = False
     noisy: bool = False
     err_max: float = 0.0
@@ -210,7 +208,7 @@ def before(crew, walls, settings, options, rng):
     n = crew.place.shape[0]
     _sense(crew, walls, settings, options, rng)
     known, offered = crew.known, crew.offered
-    if options.shares_goals and n > 1:
+    if n > 1:
         # talking is fast: within a step, word goes as far as robots see each other
         for _ in range(n - 1):
             share_goals(known, crew.own, crew.heard, crew.distance, crew.bearing)

@@ -10,6 +10,7 @@ and its gain are ours.
 
 import numpy as np
 
+from controllers.schemas.avoid import ramp
 from mjmr.jit import njit
 
 
@@ -34,10 +35,9 @@ def direction(tx, ty, angles, ranges, reach, gain):
     # the sum of cos over a half circle of k rays is k / pi
     weight = gain * np.pi / angles.shape[0]
     for k in range(angles.shape[0]):
-        if ranges[k] < reach:
-            push = weight * (1.0 - ranges[k] / reach)
-            vx -= push * np.cos(angles[k])
-            vy -= push * np.sin(angles[k])
+        push = weight * ramp(ranges[k], reach, 0.0)
+        vx -= push * np.cos(angles[k])
+        vy -= push * np.sin(angles[k])
     size = np.hypot(vx, vy)
     if size < 1e-9:
         return 0.0, 0.0

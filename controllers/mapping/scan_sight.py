@@ -4,9 +4,8 @@ import math
 
 import numpy as np
 
+from controllers.motion.free_way import SKIN, free_past
 from mjmr.jit import njit
-
-_SKIN = 0.005  # m: what is nearer than the body's radius may come this much nearer
 
 
 @njit
@@ -39,7 +38,7 @@ def way_is_clear(ranges, cos, sin, x, y, radius, reach):
         along = ux * px + uy * py
         if along <= 0.0:
             continue
-        keep = min(radius, r - _SKIN)
+        keep = min(radius, r - SKIN)
         beyond = max(along - far, 0.0)
         if math.hypot(ux * py - uy * px, beyond) < keep:
             return False
@@ -59,19 +58,12 @@ def free_ranges(ranges, cos, sin, angles, radius, reach):
         reach: [m].
     """
     found = np.full(angles.shape[0], reach)
+    c, s = np.cos(angles), np.sin(angles)
     for k in range(ranges.shape[0]):
         r = ranges[k]
         if not 0.0 < r < reach + radius:
             continue
         px, py = r * cos[k], r * sin[k]
-        keep = min(radius, r - _SKIN)
         for i in range(angles.shape[0]):
-            c, s = math.cos(angles[i]), math.sin(angles[i])
-            along = c * px + s * py
-            if along <= 0.0:
-                continue
-            across = abs(c * py - s * px)
-            if across < keep:
-                free = along - math.sqrt(keep * keep - across * across)
-                found[i] = min(found[i], max(free, 0.0))
+            found[i] = min(found[i], free_past(c[i], s[i], px, py, r, radius))
     return found

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from controllers.motion.free_way import free_past
 from mjmr.errors import InvalidInputError
 from mjmr.jit import njit
 
@@ -17,7 +18,6 @@ Array = NDArray[np.float64]
 _STEP = math.radians(5.0)  # between headings tried
 _WIDEST = math.radians(100.0)  # furthest off the direction wanted that is tried
 _WEDGED = 0.025  # m: what is this far within the radius kept from it may meet a turning hull
-_SKIN = 0.005  # m: what is nearer than the body's radius may come this much nearer
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,23 +89,15 @@ def free_way(cos, sin, points, radii, count, reach):
     Args:
         cos: Of the direction.
         sin: Of the direction.
-        points: What is in the way (m, 2) [m], the disc's middle at the origin.
+        points: What is in the way (m, 3): x, y and distance [m], the disc's middle at the origin.
         radii: Distance each keeps (m,) [m].
         count: Of the points that count.
         reach: [m].
     """
     free = reach
     for k in range(count):
-        x, y = points[k, 0], points[k, 1]
-        along = cos * x + sin * y
-        if along <= 0.0:
-            continue
-        across = abs(cos * y - sin * x)
-        # what is inside already may not come nearer, but does not hold the robot either
-        keep = min(radii[k], math.hypot(x, y) - _SKIN)
-        if keep > across:
-            free = min(free, along - math.sqrt(keep * keep - across * across))
-    return max(free, 0.0)
+        free = min(free, free_past(cos, sin, points[k, 0], points[k, 1], points[k, 2], radii[k]))
+    return free
 
 
 @njit
@@ -120,20 +112,22 @@ def near_points(ranges, cos, sin, others, radius, robot_radius, reach, points, r
         radius: Kept from walls [m].
         robot_radius: Of other robots [m], on top of it.
         reach: [m].
-        points: Filled (b + k, 2).
+        points: Filled (b + k, 3): x, y and distance.
         radii: Filled (b + k,).
     """
     count = 0
     for k in range(ranges.shape[0]):
         r = ranges[k]
         if 0.0 < r < reach:
-            points[count, 0], points[count, 1] = r * cos[k], r * sin[k]
+            x, y = r * cos[k], r * sin[k]
+            points[count, 0], points[count, 1], points[count, 2] = x, y, math.hypot(x, y)
             radii[count] = radius
             count += 1
     for k in range(others.shape[0]):
         x, y = others[k, 0], others[k, 1]
-        if math.hypot(x, y) < reach + robot_radius:  # False for NaN
-            points[count, 0], points[count, 1] = x, y
+        distance = math.hypot(x, y)
+        if distance < reach + robot_radius:  # False for NaN
+            points[count, 0], points[count, 1], points[count, 2] = x, y, distance
             radii[count] = radius + robot_radius
             count += 1
     return count
@@ -146,7 +140,7 @@ def steer(wish, distance, ranges, cos, sin, others, config):
     n = wish.shape[0]
     command = np.zeros((n, 2))
     most = ranges.shape[1] + others.shape[1]
-    points, radii = np.empty((most, 2)), np.empty(most)
+    points, radii = np.empty((most, 3)), np.empty(most)
     for i in range(n):
         if not math.isfinite(wish[i]):
             continue
@@ -172,7 +166,7 @@ def steer(wish, distance, ranges, cos, sin, others, config):
         command[i, 1] = min(max(gain * error, -max_turn), max_turn)
         nearest, side = math.inf, 1.0
         for k in range(count):
-            gap = math.hypot(points[k, 0], points[k, 1]) - radii[k]
+            gap = points[k, 2] - radii[k]
             if gap < nearest:
                 nearest, side = gap, points[k, 0]
         if nearest < -_WEDGED and abs(error) > math.pi / 9:

@@ -76,7 +76,7 @@ def _give_way(others, travel, first, ranges, cos, sin, config):
     n, known = others.shape[0], others.shape[1]
     way = np.full(n, np.nan)
     most = ranges.shape[1] + known
-    points, radii = np.empty((most, 2)), np.empty(most)
+    points, radii = np.empty((most, 3)), np.empty(most)
     for i in range(n):
         nearest, chosen = math.inf, -1
         for k in range(known):

@@ -6,9 +6,14 @@ rows are one quadratic program over the team. Source: L. Wang, A. D. Ames and M.
 barrier certificates for collisions-free multirobot systems, IEEE T-RO 33(3), 2017, in the
 single-integrator form with a linear class-K function. What a body cannot follow at once (its
 acceleration, its turning) has to be in D.
+
+Who is too near already (h < 0) has to separate. One pair that is deeper than top speed can answer
+for makes the program of the whole team infeasible: then everybody brakes, and it is counted.
 """
 
 from dataclasses import dataclass
+from numbers import Integral
+from typing import Any
 
 import numpy as np
 import osqp
@@ -21,7 +26,8 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 _SIDES = 4  # pairs of opposite sides of the polygon inside the circle of top speed
 _FREE = 1e6  # a row nobody feels: OSQP's infinity is 1e30, which would spoil its scaling
-_SOLVED = (1, 2)  # solved, solved inaccurately
+_SOLVED, _INACCURATE = 1, 2  # status of the solver
+_MET = 1e-3  # by how much an inaccurate solution may miss a row
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,7 +44,8 @@ class BarrierConfig:
         max_iterations: Of the solver.
 
     Raises:
-        InvalidInputError: A number that is not positive, or negative clearance or obstacles.
+        InvalidInputError: A number that is not positive, negative clearance, or obstacles or
+            max_iterations that are no whole number.
     """
 
     distance: float
@@ -56,10 +63,12 @@ class BarrierConfig:
                 "distance, rate, top_speed, tolerance and max_iterations must be positive; got "
                 f"{', '.join(f'{v:g}' for v in values)}"
             )
-        if not (self.clearance >= 0 and self.obstacles >= 0):
-            raise InvalidInputError(
-                f"clearance and obstacles are 0 or more; got {self.clearance} m, {self.obstacles}"
-            )
+        if not self.clearance >= 0:
+            raise InvalidInputError(f"clearance is 0 or more; got {self.clearance} m")
+        for name in ("obstacles", "max_iterations"):
+            given = getattr(self, name)
+            if not isinstance(given, Integral) or given < 0:
+                raise InvalidInputError(f"{name} is a whole number, 0 or more; got {given}")
 
 
 class BarrierFilter:
@@ -69,8 +78,8 @@ class BarrierFilter:
         n: Robots.
         config: The numbers.
         solved: Ticks whose program was solved.
-        infeasible: Ticks for which there was no safe set of velocities or none was found in time:
-            then everybody is told to stop.
+        infeasible: Ticks for which there was no safe set of velocities or none was found in time
+            that misses no row by more than 1e-3: then everybody is told to stop.
         iterations: Of the solver in the last tick.
         changed: How far the last velocities are from the wished ones (n,) [m/s].
     """
@@ -130,7 +139,9 @@ class BarrierFilter:
             polishing=False,
         )  # fmt: skip
 
-    def filter(self, position: Array, wish: Array, obstacles: ArrayLike | None = None) -> Array:
+    def filter(
+        self, position: ArrayLike, wish: ArrayLike, obstacles: ArrayLike | None = None
+    ) -> Array:
         """Velocities (n, 2) [m/s] nearest to ``wish`` that keep all apart.
 
         Args:
@@ -142,7 +153,7 @@ class BarrierFilter:
         Raises:
             InvalidInputError: Shapes that do not fit, or numbers that are not finite.
         """
-        self._check(position, wish)
+        position, wish = self._array("position", position), self._array("wish", wish)
         config, pairs, walls = self.config, self._pairs, self._walls
         apart = position[self._i] - position[self._j]
         gap = (apart**2).sum(axis=1) - config.distance**2
@@ -155,10 +166,11 @@ class BarrierFilter:
             -2 * apart[:, 0], -2 * apart[:, 1], 2 * apart[:, 0], 2 * apart[:, 1],
             toward[:, 0], toward[:, 1], self._speed,
         ])  # fmt: skip
-        self._program.update(q=-wish.ravel(), u=upper, Ax=values[self._order])
+        self._matrix.data[:] = values[self._order]
+        self._program.update(q=-wish.ravel(), u=upper, Ax=self._matrix.data)
         found = self._program.solve(raise_error=False)
         self.iterations = int(found.info.iter)
-        if found.info.status_val not in _SOLVED or not np.isfinite(found.x).all():
+        if not self._good(found, upper):
             self.infeasible += 1
             # what the solver remembers of an infeasible program leads nowhere
             self._program.warm_start(x=np.zeros(2 * self.n), y=np.zeros(len(upper)))
@@ -169,19 +181,30 @@ class BarrierFilter:
         self.changed = np.hypot(*(velocity - wish).T)
         return velocity
 
-    def _check(self, position: Array, wish: Array) -> None:
-        for name, array in (("position", position), ("wish", wish)):
-            if array.shape != (self.n, 2) or not np.isfinite(array).all():
-                raise InvalidInputError(
-                    f"{name} must be finite and of shape ({self.n}, 2); got {array.shape}"
-                )
+    def _good(self, found: Any, upper: Array) -> bool:
+        """Whether a solution is one; an inaccurate one only if it misses no row by much."""
+        status, x = found.info.status_val, np.asarray(found.x)
+        if status not in (_SOLVED, _INACCURATE) or not np.isfinite(x).all():
+            return False
+        if status == _SOLVED:
+            return True
+        rows = self._matrix @ x
+        return bool((rows <= upper + _MET).all() and (rows >= self._lower - _MET).all())
+
+    def _array(self, name: str, given: ArrayLike) -> Array:
+        array = _numbers(given)
+        if array.shape != (self.n, 2) or not np.isfinite(array).all():
+            raise InvalidInputError(
+                f"{name} must be finite and of shape ({self.n}, 2); got {array.shape}"
+            )
+        return array
 
     def _obstacle_rows(self, position: Array, obstacles: ArrayLike | None) -> tuple[Array, Array]:
         """Rows -2 (p - o).u <= gamma h of obstacles: vectors (n k, 2) and h (n k,), inf: none."""
         k = self.config.obstacles
         points = np.full((self.n, k, 2), np.nan)
         if obstacles is not None:
-            given = np.asarray(obstacles, dtype=np.float64)
+            given = _numbers(obstacles)
             if given.ndim != 3 or given.shape[::2] != (self.n, 2) or given.shape[1] > k:
                 raise InvalidInputError(
                     f"obstacles have shape ({self.n}, k, 2), k at most {k}; got {given.shape}"
@@ -192,6 +215,14 @@ class BarrierFilter:
         away = np.where(there[:, None], away, 0.0)
         room = np.where(there, (away**2).sum(axis=1) - self.config.clearance**2, np.inf)
         return -2 * away, room
+
+
+def _numbers(given: ArrayLike) -> Array:
+    """An array; an empty one of what is ragged or no numbers."""
+    try:
+        return np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        return np.empty(0)
 
 
 def keep_right(position: Array, wish: Array, reach: float, angle: float) -> Array:

@@ -6,9 +6,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from controllers.motion.free_way import free_past
 from controllers.schemas.base import Schema, View
 from controllers.schemas.percepts import Array
-from controllers.schemas.visits import ANGLES, HEADINGS, Past, due, heading, visit
+from controllers.schemas.visits import ANGLES, HEADINGS, OFF_ROUND, Past, due, heading, visit
 from mjmr.errors import InvalidInputError
 from mjmr.jit import njit
 
@@ -82,7 +83,8 @@ class AvoidPast(Schema):
         """Nowhere yet."""
         side = int(np.ceil(2 * self.extent / self.cell)) + 1
         return _Pasts(
-            np.zeros((n, side, side), dtype=np.int64), np.full(2, -self.extent),
+            np.zeros((n, side, side), dtype=np.int64),
+            np.full(2, -self.extent - OFF_ROUND * self.cell),
             np.full((n, 2), -1, dtype=np.int64), np.full((n, 2), np.inf),
             np.zeros((n, 1), dtype=np.int64),
         )  # fmt: skip
@@ -125,9 +127,6 @@ def _free(offset, radius, valid, c, s, clearance):
     for j in range(len(radius)):
         if not valid[j]:
             continue
-        along = offset[j, 0] * c + offset[j, 1] * s
-        across = offset[j, 1] * c - offset[j, 0] * s
-        reach = radius[j] + clearance
-        if abs(across) < reach and along > 0.0:
-            free = min(free, max(0.0, along - np.sqrt(reach * reach - across * across)))
+        x, y = offset[j, 0], offset[j, 1]
+        free = min(free, free_past(c, s, x, y, np.hypot(x, y), radius[j] + clearance))
     return free

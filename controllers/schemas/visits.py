@@ -19,6 +19,9 @@ from mjmr.jit import njit
 HEADINGS = 16
 ANGLES = np.arange(HEADINGS) * (2 * np.pi / HEADINGS)
 _AHEAD = (0.4, 0.8, 1.2)  # m
+# cells: a grid's corner lies so far off where it is asked for. Routes, doors and waypoints have
+# round numbers, and a robot on the border of two cells would count either by its last bit
+OFF_ROUND = 0.382
 
 
 class Past(NamedTuple):
@@ -40,8 +43,9 @@ class Past(NamedTuple):
 
 
 def past(low: NDArray[np.float64], high: NDArray[np.float64], cell: float) -> Past:
-    """Been nowhere yet, in a rectangle (2,), (2,) [m] that is grown by 2 m."""
-    low, high = np.asarray(low, dtype=np.float64) - 2.0, np.asarray(high, dtype=np.float64) + 2.0
+    """Been nowhere yet, in a rectangle (2,), (2,) [m] that is grown by 2 m, off round numbers."""
+    low = np.asarray(low, dtype=np.float64) - 2.0 - OFF_ROUND * cell
+    high = np.asarray(high, dtype=np.float64) + 2.0
     nx, ny = np.ceil((high - low) / cell).astype(int) + 1
     return Past(
         np.zeros((nx, ny), dtype=np.int64), low, np.full(2, -1, dtype=np.int64),

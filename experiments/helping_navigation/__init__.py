@@ -59,7 +59,9 @@ study = Study(
         Parameter("shares_state", "whether the explorer goes to mates when in trouble", False),
         Parameter("level", "Cr of state-sharing", 20, least=1),
         Parameter("noise", "whether mates are misperceived (section 6.1)", False),
-        Parameter("err_max", "largest relative error of a mate's distance", 0.0, least=0.0),
+        Parameter(
+            "err_max", "largest relative error of a mate's distance", 0.0, least=0.0, most=0.99
+        ),
         Parameter(
             "fault",
             "dead: a supporter neither hears nor tells; radio: a fifth of all messages is lost; "

@@ -7,7 +7,7 @@ from mjmr.claims import Bound, Claim, Evidence, Table
 
 def beyond() -> list[Claim]:
     """Every claim beyond the paper."""
-    return [*_guaranteed(), *_in_vain(), *_shortest(), *_caps()]
+    return [*_guaranteed(), *_in_vain(), *_in_vain_mostly(), *_shortest(), *_caps()]
 
 
 def _guaranteed() -> list[Claim]:
@@ -26,11 +26,12 @@ def _guaranteed() -> list[Claim]:
     ]
 
 
-def _in_vain() -> list[Claim]:
-    def share(table: Table) -> Evidence:
-        offers = table.values("offers").sum()
-        return Evidence(float(table.values("vain").sum() / offers), n=int(offers))
+def _share_in_vain(table: Table) -> Evidence:
+    offers = table.values("offers").sum()
+    return Evidence(float(table.values("vain").sum() / offers), n=int(offers))
 
+
+def _in_vain() -> list[Claim]:
     return [
         Claim(
             id=f"literal-in-vain-{world}",
@@ -38,7 +39,25 @@ def _in_vain() -> list[Claim]:
             how="literal, VisBug, all teams: share of offers taken that led to nothing",
             bound=Bound(">", 0.1),
             needs={**PLAIN, "reading": "literal", "world": world, "planner": "visbug"},
-            evaluate=share,
+            evaluate=_share_in_vain,
+        )
+        for world in PUBLISHED
+    ]
+
+
+def _in_vain_mostly() -> list[Claim]:
+    return [
+        Claim(
+            id=f"literal-in-vain-most-{world}",
+            text="in most cases, it will have to start again to explore",
+            how=(
+                "literal, VisBug, all teams: share of offers taken that led to nothing; the "
+                "paper's words as they stand, beside our lower bound, whose runs were known"
+            ),
+            bound=Bound(">", 0.5),
+            bound_source="paper",
+            needs={**PLAIN, "reading": "literal", "world": world, "planner": "visbug"},
+            evaluate=_share_in_vain,
         )
         for world in PUBLISHED
     ]

@@ -38,6 +38,18 @@ def _trap() -> list[Claim]:
             evaluate=lambda table: _mean(table.values("reached")),
         ),
         Claim(
+            id="trap-freed-all",
+            text="thanks to the help of R2, R1 finally manages to find a path (figure 10)",
+            how=(
+                "literal, Cr = 3, 5 and 20: share of runs that reach the goal within 5000 steps; "
+                "trap-follows counts the follows of all three"
+            ),
+            bound=Bound(">=", 1.0),
+            sizes=_ALL,
+            needs={**_TRAP, "reading": "literal", "shares_state": True, "level": (3, 5, 20)},
+            evaluate=lambda table: _mean(table.values("reached")),
+        ),
+        Claim(
             id="trap-follows",
             text="after several attempts, it can be seen that R1 finally manages",
             how="literal, Cr = 3, 5 and 20: most follows of the mate before the goal was reached",

@@ -42,10 +42,7 @@ class CrewSetup:
         noisy: Whether teammates are misperceived, see :class:`TeammateSight`.
         err_max: Of their distances.
         radio_loss: Probability that a message in reach is lost.
-        wheel_error: Relative error of the left wheel's radius, and minus that of the right one's,
-            that odometry does not know of.
         localizer_noise: Deviations [m, rad] of where robots take themselves to be in the office.
-        dt_max: Largest timestep [s].
         marks: Places (k, 2) [m] painted on the floor: goals, for films.
     """
 
@@ -56,9 +53,7 @@ class CrewSetup:
     noisy: bool = False
     err_max: float = 0.0
     radio_loss: float = 0.0
-    wheel_error: float = 0.0
     localizer_noise: tuple[float, float] = (0.01, 0.003)
-    dt_max: float = 0.01
     marks: Array = field(default_factory=lambda: np.empty((0, 2)))
 
 
@@ -91,9 +86,7 @@ class Crew:
                 radius=setup.sight, noisy=setup.noisy, err_max=setup.err_max, rate=1 / PERIOD
             )
         )
-        self.simulation = Simulation(
-            self.world, seed=seed, control_period=PERIOD, dt_max=setup.dt_max
-        )
+        self.simulation = Simulation(self.world, seed=seed, control_period=PERIOD, dt_max=0.01)
         self.radio = Radio(
             self.simulation,
             range=setup.sight,
@@ -102,10 +95,9 @@ class Crew:
         )
         self.meter = ContactMeter(self.simulation)
         platform: Any = self.robots.platform
-        radius = platform.rolling_radius * np.array([1 + setup.wheel_error, 1 - setup.wheel_error])
         self._odometry = Odometry(
             setup.frames,
-            radius=radius,
+            radius=platform.rolling_radius,
             track=platform.track,
             counts_per_turn=self.robots.encoders.counts_per_turn,
         )

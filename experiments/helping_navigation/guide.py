@@ -24,9 +24,6 @@ class Guide:
     what it saw: the walls within its vision, as scans entered them so far. Bug2's path along them
     is planned again whenever they grow, along the same M-line, and the target stays where it was
     on it.
-
-    Attributes:
-        unreachable: How often Bug2 found the goal walled in, by what the map had then.
     """
 
     def __init__(self, planner: str, settings: Settings, size: Array, own: Any = None):
@@ -50,12 +47,11 @@ class Guide:
         self._version = -1
         self._line: tuple[Array, Array] | None = None
         self._at, self._unseen = np.zeros(2), 0
-        self.unreachable = 0
 
     def new_goal(self) -> None:
         """Start afresh."""
         self._by_rays.begin()
-        self._line = None
+        self._forget_line()
 
     def pause(self, pose: Array) -> None:
         """Something else leads at this step: VisBug draws a new M-line when it is asked again.
@@ -64,7 +60,10 @@ class Guide:
             pose: Own (3,) in F_i.
         """
         self._by_rays.pause(pose[:2])
-        self._line = None
+        self._forget_line()
+
+    def _forget_line(self) -> None:
+        self._line, self._unseen = None, 0
 
     def look(self, pose: Array, ranges: Array, angles: Array) -> None:
         """Remember what one sees.
@@ -109,7 +108,6 @@ class Guide:
             (x, y), (gx, gy) = self._line
             kept = self._progress()
             visbug.plan(self._bug, x, y, gx, gy, edges, after, before, self._settings.left)
-            self.unreachable += int(self._bug.at[2])
             if not fresh:
                 self._resume(kept)
         tx, ty = visbug.target(self._bug, at[0], at[1], self._settings.vision, self._sight_edges)
@@ -118,7 +116,7 @@ class Guide:
         unseen = not sees(at[0], at[1], tx, ty, self._settings.vision, self._sight_edges)
         self._unseen = self._unseen + 1 if unseen else 0
         if self._unseen > _PATIENCE:
-            self._line, self._unseen = None, 0
+            self._forget_line()
         return self._at
 
     def _progress(self) -> float:

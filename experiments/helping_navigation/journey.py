@@ -38,7 +38,6 @@ class JourneySetup:
         shares_state: Whether R1 goes to mates when in trouble.
         routes: Of the other robots (n - 1), waypoints (k, 2) [m]; empty: they stand.
         phase: Waypoint each makes for first; None: spread evenly.
-        shares_goals: Whether goals are told at all.
         leg_time: After which a target is given up [s].
         faults: That are scheduled.
         settings: Numbers of the controllers.
@@ -51,7 +50,6 @@ class JourneySetup:
     shares_state: bool = False
     routes: Sequence[Array] = ()
     phase: Sequence[int] | None = None
-    shares_goals: bool = True
     leg_time: float = 900.0
     faults: Sequence[Fault] = ()
     settings: Settings = Settings(arrive=ARRIVE)
@@ -160,7 +158,7 @@ class Journey:
 
     def _talk(self) -> None:
         """Hear what was said a tick ago, look, and say what is known now."""
-        crew, setup = self.crew, self.setup
+        crew = self.crew
         inbox = [
             [(m.sender, np.asarray(m.payload)) for m in crew.radio.receive(i)]
             for i in range(crew.n)
@@ -168,11 +166,9 @@ class Journey:
         for i, mind in enumerate(self.minds):
             if i == 0:
                 mind.place_goal(crew.own(0, self._goal))
-            mind.listen(inbox[i] if setup.shares_goals or setup.shares_state else [])
+            mind.listen(inbox[i])
         for i, mind in enumerate(self.minds):
             words = mind.look(crew.look(i), lambda p, i=i: crew.sees(i, p))
-            if not setup.shares_goals:
-                words = words[: 3 + crew.n]
             if crew.n > 1:
                 crew.radio.broadcast(i, words)
         self._hears[:] = False

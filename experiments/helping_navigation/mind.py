@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controllers.helping import goal_sharing, state_sharing
-from controllers.helping.explorer import PLAN, Settings, decide, next_point
+from controllers.helping.explorer import Settings, decide, next_point
 from experiments.helping_navigation.words import enter, read, say
 
 Array = NDArray[np.float64]
@@ -40,7 +40,6 @@ class Mind:
         known: Goals, its own and others'.
         offered: Offers for its own goal.
         state: Trouble, its own and what others told of theirs.
-        mode: Of the last decision, as in :mod:`controllers.helping.explorer`.
     """
 
     def __init__(self, i: int, n: int, ghosts: int, settings: Settings, shares_state: bool):
@@ -52,7 +51,6 @@ class Mind:
         self.known = goal_sharing.memory(n, ghosts)
         self.offered = goal_sharing.offers(n, ghosts)
         self.state = state_sharing.untroubled(n)
-        self.mode = PLAN
         self._then: Look | None = None
 
     def aim_at(self, goal: Array) -> None:
@@ -130,9 +128,9 @@ class Mind:
         heard = np.zeros((n, n), dtype=bool)
         heard[i] = now.clear & hears
         x, y, there = next_point(self.offered, i)
-        self.mode, tx, ty = decide(
+        mode, tx, ty = decide(
             self.known, self.offered, self.state, i, position, heard, distance, bearing,
             sees_goal, there and sees(np.array([x, y])), self._settings,
             self._shares_state,
         )  # fmt: skip
-        return self.mode, np.array([tx, ty])
+        return mode, np.array([tx, ty])

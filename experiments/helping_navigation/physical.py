@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from controllers.helping.planners import Published
 from experiments.helping_navigation import markers, point
+from experiments.helping_navigation.allowed import check
 from experiments.helping_navigation.journey import Journey, JourneySetup
 from experiments.helping_navigation.physical_world import add_team, office_world
 from experiments.helping_navigation.scenes import office, standing_chain, tour, trap
-from mjmr.errors import InvalidInputError
 from mjmr.parts import Parts
 from mjmr.world import World
 
@@ -22,7 +22,7 @@ SIGHT = 8.0  # m
 
 
 def trial(condition: Mapping[str, Any], seed: int, parts: Parts | None = None) -> Metrics:
-    """Run one physical condition with one seed.
+    """Run one physical condition, checked, with one seed.
 
     ``targets`` are looks round of each robot in the scene ``markers``.
 
@@ -35,19 +35,9 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts | None = None) -
         Metrics; see :func:`measure` and, for markers, :func:`markers.compare`. Tours without
         faults have those of the point robots on the same targets besides: ``point_steps`` and
         ``point_each``.
-
-    Raises:
-        InvalidInputError: A planner that knows the map, or several robots without a reading.
     """
     if condition["scene"] == "markers":
         return {**markers.run(office(condition["world"]), condition["targets"], SIGHT, seed)}
-    if condition["planner"] == "shortest-path":
-        raise InvalidInputError("shortest-path knows the map, which no robot does: mode=point only")
-    if (condition["robots"] > 1) != (condition["reading"] != "none"):
-        raise InvalidInputError(
-            f"robots={condition['robots']} does not go with reading={condition['reading']}: "
-            "one robot has none, several have literal or chain"
-        )
     setups = {"tour": tour, "trap": trap, "chain": standing_chain}
     setup = setups[condition["scene"]](condition, seed)
     own = None if parts is None or parts["planner"] is Published else parts["planner"]
@@ -66,6 +56,7 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts | None = None) -
 
 def world(condition: Mapping[str, Any]) -> World:
     """World of a physical condition with its robots at their starts, seed 0."""
+    check(condition)
     setups = {"trap": trap, "chain": standing_chain}
     setup = setups.get(condition["scene"], tour)(condition, 0)
     place = office_world(setup.crew.office["size"], setup.crew.office["walls"])

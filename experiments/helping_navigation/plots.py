@@ -3,8 +3,6 @@
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from experiments.helping_navigation.measures import NAMES, POINT, cell, steps
 from experiments.helping_navigation.paths import drawn_paths
 from experiments.helping_navigation.published import PUBLISHED
@@ -111,15 +109,3 @@ def table_text(table: Table, world: str) -> str:
             cells.append(" / ".join(told[:2] if robots == 1 else told))
         lines.append(f"| {name} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
-
-
-def capped_text(table: Table, world: str) -> str:
-    """Targets given up by (planner, robots, reading) where any were, for the study's page."""
-    found = []
-    for row in table.where(**POINT, noise=False, fault="none", world=world).rows:
-        if row.metrics.get("capped"):
-            c = row.condition
-            found.append((c["planner"], c["robots"], c["reading"], row.metrics["capped"]))
-    keys = list(dict.fromkeys(f[:3] for f in found))
-    sums = {key: int(np.sum([f[3] for f in found if f[:3] == key])) for key in keys}
-    return ", ".join(f"{k[0]} {k[1]} {k[2]}: {v}" for k, v in sums.items())

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from experiments.helping_navigation.allowed import check
 from mjmr.parts import Parts
 
 Metrics = dict[str, float | int | str | bool]
@@ -15,7 +16,11 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Parts | None = None) -
         condition: What is run.
         seed: The task.
         parts: What takes a role; None: the published planners.
+
+    Raises:
+        InvalidInputError: See :func:`experiments.helping_navigation.allowed.check`.
     """
+    check(condition)
     if condition["mode"] == "physical":
         from experiments.helping_navigation import physical
 

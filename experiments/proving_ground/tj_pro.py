@@ -73,7 +73,7 @@ def circle(condition: Mapping[str, Any], seed: int) -> Metrics:
 
 
 def stop(condition: Mapping[str, Any], seed: int) -> Metrics:
-    """10 s against a wall at any angle up to 30 degrees: what it pushes with, and its tilt."""
+    """6 s against a wall at any angle up to 30 degrees: what it pushes with, and its tilt."""
     world = hall(2.0)
     yaw = Streams(seed).generator("yaw").uniform(-np.pi / 6, np.pi / 6)
     group = world.add_group(TJPro, [[1.85, 0.0, yaw]])

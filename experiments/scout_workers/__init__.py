@@ -37,7 +37,7 @@ study = Study(
             ("maze", "succession", "scaling", "open", "trap", "phase", "errors", "codes"),
         ),
         Parameter("maze", "m1 to m4 settings were chosen on, f1 to f3 are fresh", "m3", MAZES),
-        Parameter("robots", "scout and workers", 2, least=1),
+        Parameter("robots", "scout and workers, one or more", 2, least=2),
         Parameter("margin_deg", "heading error a worker tolerates", 35.0, unit="deg"),
         Parameter("avoid_deg", "a step of a turn away", 20.0, unit="deg"),
         Parameter(

@@ -13,8 +13,7 @@ import numpy as np
 import shapely
 from shapely.ops import substring
 
-from experiments.scout_workers.mazes import maze
-from experiments.scout_workers.planar import SEEN
+from experiments.scout_workers.mazes import REACH, maze
 
 _NEAR = 1e-6
 
@@ -45,7 +44,7 @@ def bug2(free: Any, nest: np.ndarray, goal: np.ndarray, hand: int) -> float:
             if place.distance(p) > _NEAR
         ]
         if not hits:
-            return way + place.distance(end) - SEEN
+            return way + place.distance(end) - REACH
         _, hit, ring = min(hits, key=lambda h: h[0])
         way += place.distance(hit)
         leaving = _leave(free, ring, line, hit, end, hand)

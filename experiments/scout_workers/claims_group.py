@@ -54,7 +54,10 @@ def _slope_in_errors(table: Table) -> Evidence:
 
 
 def _succession() -> list[Claim]:
-    words = "the path is improved each time the next robot in succession discovers the goal"
+    words = (
+        "an improvement in the path from the nest to the goal each time a worker robot "
+        "locates the goal"
+    )
     average = {**_LINE, "succession": "average"}
     return [
         Claim(
@@ -118,7 +121,10 @@ def _scaling() -> list[Claim]:
     found = [
         Claim(
             id=f"sixty-{mode}",
-            text="groups of over sixty agents; scaled up while still retaining its robustness",
+            text=(
+                "groups consisting of over sixty agents; can be scaled up to control groups "
+                "consisting of many robots while still retaining its robustness"
+            ),
             how=(
                 f"60 robots, {mode}, one every 5 s, four forced units, picked up at the goal: "
                 "share that arrives within 300 s, mean over 20 scouts or more"
@@ -166,7 +172,10 @@ def _failures() -> list[Claim]:
         found += [
             Claim(
                 id=f"ir-dead-{mode}",
-                text="sensory failures did not significantly diminish the overall success",
+                text=(
+                    "sensory and equipment failures occurred that did not significantly diminish "
+                    "the overall success"
+                ),
                 how=f"{where}, the worker's detectors dead: share of successes lost",
                 bound=Bound("<=", 0.25),
                 needs=pair,
@@ -174,7 +183,10 @@ def _failures() -> list[Claim]:
             ),
             Claim(
                 id=f"ir-dead-bumps-{mode}",
-                text="if the detectors fail, bumpers detect an impact",
+                text=(
+                    "If the infrared detectors failed to sense an imminent obstacle, the bumper "
+                    "sensors would detect an impact"
+                ),
                 how=f"{where}: bumps of workers that arrive, detectors dead / alive, means",
                 bound=Bound(">=", 3.0),
                 needs=pair,
@@ -182,7 +194,10 @@ def _failures() -> list[Claim]:
             ),
             Claim(
                 id=f"scout-killed-{mode}",
-                text="only a single robot is risked",
+                text=(
+                    "minimizes the risk to the robot group as a whole by deploying only a single "
+                    "robot initially"
+                ),
                 how="m3, the scout dies at the goal before it sends: workers that leave",
                 bound=Bound("<=", 0.0),
                 needs={**plain, "maze": "m3", "failure": "scout-killed"},
@@ -190,7 +205,10 @@ def _failures() -> list[Claim]:
             ),
             Claim(
                 id=f"worker-dead-{mode}",
-                text="each of them views the others as obstacles and avoids them as necessary",
+                text=(
+                    "each of them would simply view the others in the group as obstacles and avoid "
+                    "them as necessary"
+                ),
                 how=(
                     "corridor 0.8 m wide, the first worker dies in it: share of seconds that "
                     "arrive within 300 s"
@@ -203,7 +221,7 @@ def _failures() -> list[Claim]:
     found.append(
         Claim(
             id="bad-checksum",
-            text="checksums assure reliable one-way communication",
+            text="Error detection was enhanced by using the division form of this method",
             how="m3, the scout's check byte is wrong: workers that leave",
             bound=Bound("<=", 0.0),
             sizes=("quick", "standard", "full"),

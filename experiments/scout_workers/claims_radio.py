@@ -36,7 +36,7 @@ def _periods() -> list[Claim]:
         found.append(
             Claim(
                 id=f"period-{period:.0f}",
-                text="correct sequencing happens approximately once every 140 milliseconds"
+                text="certain to happen approximately once every 140 milliseconds"
                 if paper
                 else "not in the paper: what another receive cycle gives by arithmetic",
                 published="140 ms, once in four groups" if paper else "words only",
@@ -56,7 +56,7 @@ def _periods() -> list[Claim]:
             found.append(
                 Claim(
                     id=f"never-{period:.0f}",
-                    text="correct sequencing was certain to happen"
+                    text="proper sequencing of data is certain to be achieved"
                     if paper
                     else "not in the paper: a cycle of 30 ms never meets half of the phases",
                     how="the same: share of start phases that hear no valid group in 8 s",
@@ -98,7 +98,7 @@ def _checks() -> list[Claim]:
         ),
         Claim(
             id="undetected",
-            text="checksums, by the 8-bit cyclic redundancy check method",
+            text="calculated using the 8-bit Cyclic Redundancy Check (CRC) method",
             how="1 % of bytes read as another: groups that pass though not sent so / groups read",
             bound=Bound("<=", 0.001),
             sizes=_ALL,

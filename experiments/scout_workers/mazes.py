@@ -1,5 +1,6 @@
 """Mazes as data: read, checked, and what of them can be driven through."""
 
+import functools
 import json
 import math
 from collections.abc import Mapping
@@ -12,10 +13,11 @@ import shapely
 from numpy.typing import NDArray
 
 from mjmr.errors import InvalidInputError, UnknownNameError
+from mjmr.robots.tj_pro import TJPro
 
 Array = NDArray[np.float64]
 FILE = Path(__file__).with_name("mazes.json")
-ROBOT = 0.09  # m, radius of a TJ Pro
+ROBOT = TJPro.radius  # m
 GAP = 0.45  # m, narrowest passage that a maze may have
 WALL_HEIGHT = 0.15  # m, of walls and blocks
 REACH = 0.15  # m, radius of nest's and goal's patches; a goal is seen from its patch
@@ -148,10 +150,16 @@ def maze(name: str) -> Maze:
     Raises:
         UnknownNameError: No such maze; lists those there are.
     """
-    mazes = load()
+    mazes = _own()
     if name not in mazes:
         raise UnknownNameError("maze", name, mazes)
     return mazes[name]
+
+
+@functools.cache
+def _own() -> dict[str, Maze]:
+    """The study's mazes, read and checked once a process."""
+    return load()
 
 
 def _maze(name: str, found: Any, size: float) -> Maze:
@@ -163,12 +171,14 @@ def _maze(name: str, found: Any, size: float) -> Maze:
     if not isinstance(found["blocks"], list):
         raise InvalidInputError(f"maze {name}: blocks is a list; got {found['blocks']!r}")
     blocks = [_numbers(f"maze {name}: block {k}", b, 4) for k, b in enumerate(found["blocks"])]
+    table = np.array(blocks, dtype=np.float64).reshape(-1, 4)
+    table.setflags(write=False)
     return Maze(
         name=name,
         size=size,
         nest=_numbers(f"maze {name}: nest", found["nest"], 2),
         goal=_numbers(f"maze {name}: goal", found["goal"], 2),
-        blocks=np.array(blocks, dtype=np.float64).reshape(-1, 4),
+        blocks=table,
     )
 
 

@@ -8,6 +8,8 @@ import numpy as np
 
 from controllers.scouting import UNIT, ScoutTeam
 from controllers.scouting.coding import FARTHEST, from_code, to_code
+from experiments.scout_workers.field import Setting
+from experiments.scout_workers.options import behaviour, compass
 from experiments.scout_workers.planar import PlanarField
 from mjmr.randomness import Streams
 
@@ -23,18 +25,18 @@ def open_field(given: Mapping[str, Any], seed: int) -> dict[str, Any]:
         coded vector is off the uncoded one over what coding allows: half a unit along, half a
         step of direction across; the same while the displacement fits into its byte.
     """
-    from experiments.scout_workers.trial import behaviour, compass
-
     middle = np.full(2, _SIZE / 2)
     field = PlanarField(
-        1,
-        seed=seed,
-        size=_SIZE,
-        blocks=np.empty((0, 4)),
-        nest=middle,
-        goal=np.zeros(2),
-        compass=compass(given),
-        servo_spread=given["servo_pct"] / 100.0,
+        Setting(
+            n=1,
+            seed=seed,
+            size=_SIZE,
+            blocks=np.empty((0, 4)),
+            nest=middle,
+            goal=np.zeros(2),
+            compass=compass(given),
+            servo_spread=given["servo_pct"] / 100.0,
+        )
     )
     team = ScoutTeam(1, rng=Streams(seed).generator("controllers"), behaviour=behaviour(given))
     field.put_down(0)

@@ -13,12 +13,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controllers.scouting import LOOP
-from controllers.scouting.coding import Codec
 from experiments.scout_workers.arena import build_arena, yard_slots
-from experiments.scout_workers.field import Array, Flags, Senses, Tally
+from experiments.scout_workers.field import (
+    CLEARANCE,
+    DRIFT,
+    Array,
+    Flags,
+    Senses,
+    Setting,
+    Tally,
+)
 from experiments.scout_workers.mazes import REACH
-from experiments.scout_workers.planar import CompassErrors
-from mjmr.byte_channel import ByteTiming
 from mjmr.byte_radio import ByteRadio
 from mjmr.errors import InvalidInputError
 from mjmr.faults import Fault
@@ -32,9 +37,7 @@ from mjmr.simulation import Simulation
 
 TICKS = 5  # control periods in a program loop
 TIMESTEP = 0.01  # s
-DRIFT = 0.2  # Hz, at which the compass's drift is cut off
 SECTORS = 6  # of the bumper; the front ones are 0 ahead, 1 left of it, 5 right
-_CLEARANCE = 0.01  # m, round a robot that is put down
 
 
 class PhysicalField:
@@ -48,41 +51,14 @@ class PhysicalField:
         touches: Control periods that ended with a robot touching another one (n,).
     """
 
-    def __init__(
-        self,
-        n: int,
-        *,
-        seed: int,
-        size: float,
-        blocks: Array,
-        nest: Array,
-        goal: Array,
-        compass: CompassErrors | None = None,
-        servo_spread: float = 0.05,
-        timing: ByteTiming | None = None,
-        codec: Codec | None = None,
-        blind: Flags | None = None,
-    ):
-        """An empty maze and n robots in the yard beside it.
-
-        Args:
-            n: Robots.
-            seed: Of the trial.
-            size: Side of the arena [m].
-            blocks: Corners (k, 4) [m].
-            nest: (2,) [m].
-            goal: (2,) [m].
-            compass: Its errors.
-            servo_spread: Each servo is up to this much fast or slow, for good.
-            timing: Of the radio.
-            codec: Whose checks the radio's receivers make.
-            blind: Whose infrared detectors are dead (n,).
-        """
-        self.n, self.time, self.nest = n, 0.0, np.array(nest, dtype=np.float64)
-        streams, c = Streams(seed), compass or CompassErrors()
-        world = build_arena(size, blocks, nest, goal, n)
+    def __init__(self, setting: Setting):
+        """An empty maze and robots in the yard beside it."""
+        n, size, nest, goal = setting.n, setting.size, setting.nest, setting.goal
+        self.n, self.time, self.nest = n, 0.0, nest
+        streams, c = Streams(setting.seed), setting.compass
+        world = build_arena(size, setting.blocks, nest, goal, n)
         self._yard = yard_slots(size, n)
-        gains = draw_servo_gains(streams.generator("servos"), n, servo_spread)
+        gains = draw_servo_gains(streams.generator("servos"), n, setting.servo_spread)
         self.robots = robots = world.add_group(TJPro(servo_gains=gains), self._yard)
         rate = 1.0 / LOOP
         self._compass = robots.mount(
@@ -91,16 +67,19 @@ class PhysicalField:
                 drift_time=1.0 / (2.0 * math.pi * DRIFT),
             )
         )  # fmt: skip
-        self._proximity = robots.mount(InfraredProximity(trip=0.10, rate=rate))
+        self._proximity = robots.mount(InfraredProximity(trip=TJPro.trip, rate=rate))
         self._bumper = robots.mount(Bumper(sectors=SECTORS, threshold=0.5, rate=rate))
         self._patch = robots.mount(FloorPatch([[*goal, REACH]], rate=rate))
-        self.simulation = Simulation(world, seed=seed, control_period=LOOP / TICKS, dt_max=TIMESTEP)
-        self._radio = ByteRadio(self.simulation, timing, check=(codec or Codec()).valid)
+        self.simulation = Simulation(
+            world, seed=setting.seed, control_period=LOOP / TICKS, dt_max=TIMESTEP
+        )
+        self._radio = ByteRadio(self.simulation, setting.timing, check=setting.codec.valid)
         self._headings = streams.generator("nest")
         self._present, self._running = np.zeros(n, dtype=bool), np.zeros(n, dtype=bool)
         self._alive = np.ones(n, dtype=bool)
-        self._blind = np.zeros(n, dtype=bool) if blind is None else np.asarray(blind, dtype=bool)
+        self._blind = setting.blind
         self._way, self._bumps = np.zeros(n), np.zeros(n, dtype=np.int64)
+        self._hidden = np.zeros(n, dtype=np.int64)
         self.touches = np.zeros(n, dtype=np.int64)
         self._place = self._yard[:, :2].copy()
         self._owners = self._rims()
@@ -115,7 +94,7 @@ class PhysicalField:
     def put_down(self, robot: int) -> bool:
         """Put a robot into the nest, heading anywhere; False if it is not free."""
         away = np.hypot(*(self._place - self.nest).T)
-        if (away[self._present] < 2 * TJPro.radius + _CLEARANCE).any():
+        if (away[self._present] < 2 * TJPro.radius + CLEARANCE).any():
             return False
         heading = self._headings.uniform(-math.pi, math.pi)
         self._lift(robot, np.array([*self.nest, heading]))
@@ -146,7 +125,9 @@ class PhysicalField:
         bumped = self._bumper.read()
         bump = (bumped[:, [1, 5]] | bumped[:, [0]]) & there[:, None]
         self._bumps += bump.any(axis=1)
-        ir = self._proximity.read() & (there & ~self._blind)[:, None]
+        ir = self._proximity.read() & there[:, None]
+        self._hidden += self._blind & ir.any(axis=1)
+        ir[self._blind] = False
         heading = np.where(there, self._compass.read(), np.nan)
         return Senses(heading, ir, bump, self._patch.read()[:, 0] & there)
 
@@ -187,7 +168,7 @@ class PhysicalField:
         read, accepted, dropped, undetected = (int(count.sum()) for count in groups)
         return Tally(
             self._way.copy(), self._bumps.copy(), self._place.copy(),
-            (read, accepted, dropped, undetected),
+            (read, accepted, dropped, undetected), self._hidden.copy(),
         )  # fmt: skip
 
     def _lift(self, robot: int, pose: Array) -> None:

@@ -6,102 +6,60 @@ depends on the place, and whole steps.
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from controllers.scouting import LOOP
-from controllers.scouting.coding import Codec
 from experiments.scout_workers import planar_kernel
-from experiments.scout_workers.field import Array, Flags, Senses, Tally
-from mjmr.byte_channel import ByteChannel, ByteTiming
+from experiments.scout_workers.field import (
+    CLEARANCE,
+    DRIFT,
+    Array,
+    Flags,
+    Senses,
+    Setting,
+    Tally,
+)
+from experiments.scout_workers.mazes import REACH
+from mjmr.byte_channel import ByteChannel
 from mjmr.geometry import wrap_angle
 from mjmr.randomness import Streams
+from mjmr.robots.tj_pro import TJPro, draw_servo_gains
 from mjmr.sensors.ambient_field import AmbientField
 
-RADIUS, TRACK = 0.09, 0.13  # m: the TJ Pro's, equal by test
-TRIP = 0.10  # m, of the detectors
 BEARINGS = np.radians([25.0, -25.0])
 FAN = np.radians([-10.0, 0.0, 10.0])
-SEEN = 0.15  # m, from where the goal is seen
 STEPS = 20  # of the motion in a loop: 3.8 mm each
 
 
-@dataclass(frozen=True, kw_only=True)
-class CompassErrors:
-    """Errors of the compass.
-
-    Args:
-        noise: Deviation of every reading [rad].
-        drift: Deviation of an error that wanders, cut off at 0.2 Hz [rad].
-        bias: Bound of an error that depends on the place, in waves about 2 m long [rad].
-        step: Readings are whole multiples of it [rad]; 0: not rounded.
-    """
-
-    noise: float = math.radians(2.0)
-    drift: float = math.radians(1.0)
-    bias: float = math.radians(5.0)
-    step: float = math.radians(2.0)
-
-
-EXACT = CompassErrors(noise=0.0, drift=0.0, bias=0.0, step=0.0)
-_KEEP = math.exp(-2 * math.pi * 0.2 * LOOP)
+_KEEP = math.exp(-2 * math.pi * DRIFT * LOOP)
 _WAVES = 2.0  # m, mean length of the bias's waves
 
 
 class PlanarField:
     """n discs in a maze; see :class:`experiments.scout_workers.field.Field`."""
 
-    def __init__(
-        self,
-        n: int,
-        *,
-        seed: int,
-        size: float,
-        blocks: Array,
-        nest: Array,
-        goal: Array,
-        compass: CompassErrors | None = None,
-        servo_spread: float = 0.05,
-        timing: ByteTiming | None = None,
-        codec: Codec | None = None,
-        blind: Flags | None = None,
-    ):
-        """An empty maze and n robots beside it.
-
-        Args:
-            n: Robots.
-            seed: Of the trial.
-            size: Side of the arena [m].
-            blocks: Corners (k, 4) [m].
-            nest: (2,) [m].
-            goal: (2,) [m].
-            compass: Its errors.
-            servo_spread: Each servo is up to this much fast or slow, for good.
-            timing: Of the radio.
-            codec: What counts accepted groups; the team has its own.
-            blind: Whose infrared detectors are dead (n,).
-        """
-        streams = Streams(seed)
+    def __init__(self, setting: Setting):
+        """An empty maze and robots beside it."""
+        n, streams = setting.n, Streams(setting.seed)
         self.n, self.time = n, 0.0
-        self.size, self.blocks = float(size), np.ascontiguousarray(blocks, dtype=np.float64)
-        self.nest, self.goal = np.asarray(nest, dtype=float), np.asarray(goal, dtype=float)
-        self.compass = compass or CompassErrors()
+        self.size, self.blocks = float(setting.size), setting.blocks
+        self.nest, self.goal, self.compass = setting.nest, setting.goal, setting.compass
         self.pose = np.zeros((n, 3))
         self.present, self.alive = np.zeros(n, dtype=bool), np.ones(n, dtype=bool)
-        self._blind = np.zeros(n, dtype=bool) if blind is None else np.asarray(blind, dtype=bool)
-        gains = streams.generator("servos").uniform(1 - servo_spread, 1 + servo_spread, (n, 2))
-        self._gains = gains
+        self._blind = setting.blind
+        gains = draw_servo_gains(streams.generator("servos"), n, setting.servo_spread)
+        self._robots = TJPro(servo_gains=gains)
         self._headings = streams.generator("nest")
         self._noise = streams.generator("compass")
         self._drift = self._noise.standard_normal(n)
         self._room = AmbientField(streams.generator("ambient field"), self.compass.bias, _WAVES)
-        self._channel = ByteChannel(n, timing or ByteTiming(), streams.sequence("radio"))
-        self._codec = codec or Codec()
+        self._channel = ByteChannel(n, setting.timing, streams.sequence("radio"))
+        self._codec = setting.codec
         self._way, self._bumps = np.zeros(n), np.zeros(n, dtype=np.int64)
+        self._hidden = np.zeros(n, dtype=np.int64)
         self._bump = np.zeros((n, 2), dtype=bool)
-        self._touched = np.zeros(n, dtype=bool)
         self._groups = np.zeros(4, dtype=np.int64)
 
     @property
@@ -112,7 +70,7 @@ class PlanarField:
     def put_down(self, robot: int) -> bool:
         """Put a robot into the nest, heading anywhere; False if it is not free."""
         away = np.hypot(*(self.pose[:, :2] - self.nest).T)
-        if (away[self.present] < 2 * RADIUS + 0.01).any():
+        if (away[self.present] < 2 * TJPro.radius + CLEARANCE).any():
             return False
         self.pose[robot] = (*self.nest, self._headings.uniform(-math.pi, math.pi))
         self.present[robot] = True
@@ -137,13 +95,22 @@ class PlanarField:
             heading = np.round(heading / c.step) * c.step
         ir = np.zeros((n, 2), dtype=bool)
         planar_kernel.tripped(
-            self.pose, self.present, self.blocks, self.size, RADIUS, TRIP, BEARINGS, FAN, ir
+            self.pose,
+            self.present,
+            self.blocks,
+            self.size,
+            TJPro.radius,
+            TJPro.trip,
+            BEARINGS,
+            FAN,
+            ir,
         )
+        self._hidden += self._blind & ir.any(axis=1)
         ir[self._blind] = False
         bump = self._bump.copy()
         self._bump[:] = False
         self._bumps += bump.any(axis=1)
-        seen = np.hypot(*(self.pose[:, :2] - self.goal).T) <= SEEN
+        seen = np.hypot(*(self.pose[:, :2] - self.goal).T) <= REACH
         heading = np.where(self.present, wrap_angle(heading), np.nan)
         return Senses(heading, ir, bump, seen & self.present)
 
@@ -165,14 +132,10 @@ class PlanarField:
 
     def advance(self, command: Array) -> None:
         """Drive on for one loop with v [m/s] and w [rad/s], (n, 2)."""
-        half = TRACK / 2
-        left = self._gains[:, 0] * (command[:, 0] - half * command[:, 1])
-        right = self._gains[:, 1] * (command[:, 0] + half * command[:, 1])
-        done = np.column_stack([(left + right) / 2, (right - left) / TRACK])
-        done[~self.alive] = 0.0
+        done = np.where(self.alive[:, None], self._robots.mistuned(command), 0.0)
         planar_kernel.advance(
-            self.pose, self.present, done, self.blocks, self.size, RADIUS, LOOP / STEPS, STEPS,
-            self._bump, self._way, self._touched,
+            self.pose, self.present, done, self.blocks, self.size, TJPro.radius, LOOP / STEPS,
+            STEPS, self._bump, self._way,
         )  # fmt: skip
         self.time = round((self.time + LOOP) / LOOP) * LOOP
 
@@ -181,5 +144,5 @@ class PlanarField:
         read, accepted, dropped, undetected = (int(v) for v in self._groups)
         return Tally(
             self._way.copy(), self._bumps.copy(), self.pose[:, :2].copy(),
-            (read, accepted, dropped, undetected),
+            (read, accepted, dropped, undetected), self._hidden.copy(),
         )  # fmt: skip

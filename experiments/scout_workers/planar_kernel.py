@@ -28,7 +28,7 @@ def _press(bump, i, bearing):
 
 
 @njit
-def advance(pose, present, command, blocks, size, radius, dt, steps, bump, way, touched):
+def advance(pose, present, command, blocks, size, radius, dt, steps, bump, way):
     """Drive every robot that is present for ``steps`` times ``dt``.
 
     Args:
@@ -42,7 +42,6 @@ def advance(pose, present, command, blocks, size, radius, dt, steps, bump, way, 
         steps: How many.
         bump: Set where a front bumper is pressed, left and right (n, 2).
         way: Path lengths, added to (n,) [m].
-        touched: Set where a robot touches another one (n,).
     """
     n = len(pose)
     for _ in range(steps):
@@ -89,7 +88,6 @@ def advance(pose, present, command, blocks, size, radius, dt, steps, bump, way, 
                     d = np.sqrt(dx * dx + dy * dy)
                     if _EPS < d < 2.0 * radius - _EPS:
                         free = False
-                        touched[i], touched[j] = True, True
                         toward = np.arctan2(-dy, -dx)
                         _press(bump, i, toward - pose[i, 2])
                         _press(bump, j, toward + np.pi - pose[j, 2])

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from experiments.scout_workers.plots_spread import spreads
 from experiments.scout_workers.sizes import CHOSEN
 from mjmr import statistics
 from mjmr.plot import figure, interval_line
@@ -37,11 +38,12 @@ def plots(table: Table, folder: Path) -> list[Path]:
         rows = table.where(**wanted)
         if rows.finished and len(rows.distinct(axis)) > 1:
             written.append(_shares(rows, folder / f"{name}.svg", axis, label, by))
-    return written
+    return [*written, *spreads(table, pairs, folder)]
 
 
 def tracks(path: Path, seed: int = 0) -> Path:
     """Scout's and worker's track in each of the four mazes, planar, with their times."""
+    from controllers.scouting import LOOP
     from experiments.scout_workers import study
     from experiments.scout_workers.mazes import maze
     from experiments.scout_workers.run import run
@@ -54,7 +56,7 @@ def tracks(path: Path, seed: int = 0) -> Path:
             parts = build(study.condition(maze=name), seed)
             out = run(*parts, keep_trails=True)
             trail = np.array(out.trails) + [k * (place.size + 0.3), 0.0]
-            until = int(np.nan_to_num(out.found[0] / 0.5, nan=len(trail))) + 1
+            until = int(np.nan_to_num(out.found[0] / LOOP, nan=len(trail))) + 1
             axes.plot(*trail[:until, 0].T, color="0.55", linewidth=0.6)
             axes.plot(*trail[:, 1].T, color="tab:red", linewidth=1.4)
             x = k * (place.size + 0.3)

@@ -15,7 +15,6 @@ from experiments.scout_workers.field import Array, Field, Flags, Senses, Tally
 
 SCOUT_LIMIT, WORKER_LIMIT = 1800.0, 300.0  # s
 RUN_LIMIT = 7200.0  # s, should the nest stay blocked
-FINISHES = ("search", "remove", "park", "home")
 
 
 @dataclass(kw_only=True)
@@ -61,7 +60,8 @@ class Outcome:
         died: Who was killed.
         tally: At the end.
         ended: [s].
-        loops: Loops each robot ran.
+        trails: Where the robots were in every loop (n, 2) [m], NaN where one does not run; kept
+            only if asked for.
     """
 
     left: Array
@@ -143,7 +143,6 @@ def run(where: Field, team: ScoutTeam, plan: Plan, *, keep_trails: bool = False)
     out.ended = where.time
     out.tally = where.tally()
     missing = np.isnan(out.way_at)
-    out.way_at[missing] = np.nan
     out.bumps_at[missing] = out.tally.bumps[missing]
     return out
 

@@ -7,8 +7,7 @@ import networkx as nx
 import numpy as np
 import shapely
 
-from experiments.scout_workers.mazes import ROBOT, maze
-from experiments.scout_workers.planar import SEEN
+from experiments.scout_workers.mazes import REACH, ROBOT, maze
 
 
 def shortest(size: float, blocks: np.ndarray, nest: np.ndarray, goal: np.ndarray) -> float:
@@ -21,7 +20,7 @@ def shortest(size: float, blocks: np.ndarray, nest: np.ndarray, goal: np.ndarray
     solid = shapely.union_all([g.buffer(-1e-6) for g in grown])
     arena = shapely.box(0, 0, size, size).buffer(-ROBOT + 1e-9)
     turn = np.linspace(0, 2 * np.pi, 64, endpoint=False)
-    ends = goal + SEEN * np.column_stack([np.cos(turn), np.sin(turn)])
+    ends = goal + REACH * np.column_stack([np.cos(turn), np.sin(turn)])
     corners = [c for g in grown for c in g.exterior.coords[:-1]]
     points = [tuple(nest), *corners, *map(tuple, ends)]
     points = [p for p in points if arena.covers(shapely.Point(p))]

@@ -1,19 +1,20 @@
 """One trial: the experiment its condition names."""
 
-import importlib
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from controllers.scouting import UNIT, Behaviour, Codec, ScoutTeam
+from controllers.scouting import UNIT, Codec, ScoutTeam
 from controllers.scouting.records import kinds_needed
-from experiments.scout_workers import bug2
-from experiments.scout_workers.field import Array, Field
+from experiments.scout_workers import bug2, open_field, stream, study, trap
+from experiments.scout_workers.field import Array, Field, Setting
 from experiments.scout_workers.mazes import maze
-from experiments.scout_workers.planar import EXACT, CompassErrors
+from experiments.scout_workers.options import Given, behaviour, compass
+from experiments.scout_workers.physical import PhysicalField
+from experiments.scout_workers.planar import PlanarField
 from experiments.scout_workers.run import Outcome, Plan, run
 from experiments.scout_workers.shortest import of_maze
 from mjmr.byte_channel import ByteTiming
@@ -21,8 +22,7 @@ from mjmr.errors import InvalidInputError
 from mjmr.randomness import Streams
 
 Metrics = dict[str, float | int | bool | None]
-Given = Mapping[str, Any]
-FIELDS = {"planar": "planar:PlanarField", "physical": "physical:PhysicalField"}
+FIELDS = {"planar": PlanarField, "physical": PhysicalField}
 AIRTIME = 5.0  # s, of a message where finishers send too
 CORRIDOR_MIDDLE = 1.3  # m, beyond which the first worker dies there
 
@@ -37,8 +37,6 @@ def trial(condition: Given, seed: int) -> Metrics:
     Raises:
         InvalidInputError: The mode has no such experiment.
     """
-    from experiments.scout_workers import open_field, stream, trap
-
     experiments: dict[str, tuple[tuple[str, ...], Callable[[Given, int], Metrics]]] = {
         "maze": (("planar", "physical"), pair),
         "succession": (("planar", "physical"), succession),
@@ -58,34 +56,6 @@ def trial(condition: Given, seed: int) -> Metrics:
     return function(condition, seed)
 
 
-def behaviour(given: Given) -> Behaviour:
-    """What the robots are told."""
-    step = math.radians(given["compass_deg"])
-    finish = given["finish"]
-    return Behaviour(
-        margin=math.radians(given["margin_deg"]),
-        avoid_step=math.radians(given["avoid_deg"]),
-        forced=given["forced"],
-        # a turn cannot end nearer to its course than the compass can tell
-        tolerance=max(math.radians(10.0), 0.6 * step),
-        succession=given["succession"],
-        release=given["release"],
-        scout_after="search" if finish == "search" else "stop",
-        after_goal="home" if finish == "home" else "stop",
-    )
-
-
-def compass(given: Given) -> CompassErrors:
-    """Errors of the compass."""
-    if given["compass"] == "exact":
-        return EXACT
-    white = given["compass"] == "white"
-    return CompassErrors(
-        step=math.radians(given["compass_deg"]),
-        **({"drift": 0.0, "bias": 0.0} if white else {}),
-    )
-
-
 def build(given: Given, seed: int) -> tuple[Field, ScoutTeam, Plan]:
     """Field, controllers and plan of a condition that is run in a maze."""
     place = maze(given["maze"])
@@ -93,11 +63,8 @@ def build(given: Given, seed: int) -> tuple[Field, ScoutTeam, Plan]:
     codec = Codec(given["check"], kinds_needed(given["succession"]))
     told = behaviour(given)
     team = ScoutTeam(n, rng=Streams(seed).generator("controllers"), behaviour=told, codec=codec)
-    blind = np.arange(n) >= team.scouts if given["failure"] == "ir-dead" else None
-    module, _, name = FIELDS[given["mode"]].partition(":")
-    kind = getattr(importlib.import_module(f"experiments.scout_workers.{module}"), name)
-    field = kind(
-        n,
+    setting = Setting(
+        n=n,
         seed=seed,
         size=place.size,
         blocks=place.blocks,
@@ -107,7 +74,7 @@ def build(given: Given, seed: int) -> tuple[Field, ScoutTeam, Plan]:
         servo_spread=given["servo_pct"] / 100.0,
         timing=ByteTiming(bit_error=given["bit_error"]),
         codec=codec,
-        blind=blind,
+        blind=(np.arange(n) >= team.scouts) & (given["failure"] == "ir-dead"),
     )
     plan = Plan(
         finish=given["finish"],
@@ -116,7 +83,7 @@ def build(given: Given, seed: int) -> tuple[Field, ScoutTeam, Plan]:
         told=(place.goal - place.nest) / UNIT if given["vector"] == "exact" else None,
         dies_beyond=CORRIDOR_MIDDLE,
     )
-    return field, team, plan
+    return FIELDS[given["mode"]](setting), team, plan
 
 
 def _run(given: Given, seed: int) -> tuple[Outcome, Metrics]:
@@ -135,6 +102,7 @@ def _run(given: Given, seed: int) -> tuple[Outcome, Metrics]:
         "groups_accepted": accepted,
         "groups_dropped": dropped,
         "groups_undetected": undetected,
+        "hidden": int(out.tally.hidden.sum()),
         "left": int(np.isfinite(out.left[1:]).sum()),
         "ended_s": out.ended,
         "wall_real_time": out.ended / max(time.process_time() - start, 1e-9),
@@ -192,8 +160,6 @@ def scaling(given: Given, seed: int) -> Metrics:
 
 def prepare() -> None:
     """Compile what the trials need: a run on the plane, and a moment in MuJoCo."""
-    from experiments.scout_workers import study
-
     trial(study.condition(vector="exact"), 0)
     field, team, _ = build(study.condition(mode="physical"), 0)
     field.put_down(0)

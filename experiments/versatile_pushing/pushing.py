@@ -41,8 +41,7 @@ def friction_force(weight: float) -> float:
 
 def stall(condition: Mapping[str, Any], seed: int) -> Metrics:
     """One robot pushes, head on, at a disc that nothing moves, in a direction drawn by seed."""
-    heading = float(np.random.default_rng([seed, 1]).uniform(-np.pi, np.pi))
-    simulation, robots = _scene(condition, 1, 1e4, heading, 0.02, 0.0)
+    simulation, robots, heading = _simulate(condition, seed)
     meter = _PushMeter(simulation, robots)
     _straight_on(simulation, robots, 6.0)
     push = meter.mean(3.0, heading)
@@ -55,16 +54,12 @@ def held(condition: Mapping[str, Any], seed: int) -> Metrics:
     What the disc is knocked along by their arrival, in the first 3 s, is told apart. Their push,
     as a share of what they can do, says that they did push all the time.
     """
-    weight, heading = int(condition["weight"]), _heading(condition, seed)
-    if weight < 1:
-        raise InvalidInputError(f"task=held takes a weight of 1 or more; got {weight}")
-    shift = _shift(seed)
-    simulation, robots = _scene(condition, weight, friction_force(weight), heading, 0.02, shift)
+    simulation, robots, heading = _simulate(condition, seed)
     meter = _PushMeter(simulation, robots)
     way = _straight_on(simulation, robots, 63.0)
     settled = way[round(3.0 / PERIOD)]
     return {
-        "push_share": meter.mean(3.0, heading) / (weight * RoundPusher.push_force),
+        "push_share": meter.mean(3.0, heading) / (robots.n * RoundPusher.push_force),
         "creep_mm": 1e3 * float(np.hypot(*(way[-1] - settled))),
         "arrival_mm": 1e3 * float(np.hypot(*(settled - way[0]))),
     }
@@ -76,59 +71,7 @@ def moved(condition: Mapping[str, Any], seed: int) -> Metrics:
     They drive up from ``RUN_UP`` away. Time counts from the last control instant before the disc
     has moved by a millimetre.
     """
-    return _moved(condition, seed, RUN_UP)
-
-
-def moved_from_rest(condition: Mapping[str, Any], seed: int) -> Metrics:
-    """The same, but they start at rest and touch the disc: what excess force alone accelerates."""
-    return _moved(condition, seed, 0.0)
-
-
-def wedged(condition: Mapping[str, Any], seed: int) -> Metrics:
-    """One robot heads ``off_normal_deg`` off the normal of a disc of weight 1, for 20 s.
-
-    The bearing of the point where it touches, and the side it heads off to, are drawn by seed.
-    """
-    return _wedged(condition, seed, math.radians(float(condition["off_normal_deg"])))
-
-
-def wedged_anywhere(condition: Mapping[str, Any], seed: int) -> Metrics:
-    """The same at an angle drawn by seed, from 20 to 85 degrees.
-
-    Everything is alike in every direction, so that of :func:`wedged` every seed says the same.
-    """
-    low, high = WEDGE
-    return _wedged(condition, seed, float(np.random.default_rng([seed, 5]).uniform(low, high)))
-
-
-TESTS = {
-    "stall": stall,
-    "held": held,
-    "moved": moved,
-    "moved-from-rest": moved_from_rest,
-    "wedged": wedged,
-    "wedged-anywhere": wedged_anywhere,
-}
-
-
-def _wedged(condition: Mapping[str, Any], seed: int, off_normal: float) -> Metrics:
-    rng = np.random.default_rng([seed, 2])
-    off = float(rng.choice([-1.0, 1.0])) * off_normal
-    bearing = float(rng.uniform(-np.pi, np.pi))
-    world = _hall()
-    world.add_disc(0.0, 0.0, RADIUS, friction_force(1))
-    away = RADIUS + RoundPusher.radius + 0.01
-    pose = [-away * math.cos(bearing), -away * math.sin(bearing), bearing + off]
-    robots = world.add_group(RoundPusher, [pose])
-    way = _straight_on(_simulate(world, condition), robots, 20.0)
-    return {"way": float(np.hypot(*(way[-1] - way[0])))}
-
-
-def _moved(condition: Mapping[str, Any], seed: int, gap: float) -> Metrics:
-    heading = _heading(condition, seed)
-    weight, shift = int(condition["weight"]), _shift(seed)
-    force = friction_force(weight)
-    simulation, robots = _scene(condition, weight + 1, force, heading, gap, shift)
+    simulation, robots, heading = _simulate(condition, seed)
     way = _straight_on(simulation, robots, 7.0)
     begun = np.flatnonzero(np.hypot(*(way - way[0]).T) > 1e-3)
     if not len(begun):
@@ -137,6 +80,69 @@ def _moved(condition: Mapping[str, Any], seed: int, gap: float) -> Metrics:
     gone = way[first + round(5.0 / PERIOD)] - way[first]
     c, s = math.cos(heading), math.sin(heading)
     return {"way": float(c * gone[0] + s * gone[1]), "aside": float(abs(c * gone[1] - s * gone[0]))}
+
+
+def wedged(condition: Mapping[str, Any], seed: int) -> Metrics:
+    """One robot heads off the normal of a disc of weight 1, for 20 s.
+
+    By ``off_normal_deg``, or ``wedged-anywhere`` by 20 to 85 degrees: everything is alike in every
+    direction, so that the former says the same with every seed. The bearing of the point where it
+    touches, and the side it heads off to, are drawn by seed.
+    """
+    simulation, robots, _ = _simulate(condition, seed)
+    way = _straight_on(simulation, robots, 20.0)
+    return {"way": float(np.hypot(*(way[-1] - way[0])))}
+
+
+TESTS = {
+    "stall": stall,
+    "held": held,
+    "moved": moved,
+    "moved-from-rest": moved,  # what excess force alone accelerates
+    "wedged": wedged,
+    "wedged-anywhere": wedged,
+}
+
+
+def scene(condition: Mapping[str, Any], seed: int) -> tuple[World, Group, float]:
+    """World of a check, with its one disc and robots that touch it or are about to.
+
+    Returns:
+        World, robots, and where they head [rad].
+
+    Raises:
+        InvalidInputError: Nobody holds the disc.
+    """
+    test, weight = condition["task"], int(condition["weight"])
+    if test.startswith("wedged"):
+        return _askew(_off_normal(condition, seed), seed)
+    if test == "stall":
+        heading = float(np.random.default_rng([seed, 1]).uniform(-np.pi, np.pi))
+        return _abreast(1, 1e4, heading, 0.02, 0.0)
+    heading, shift = _heading(condition, seed), _shift(seed)
+    if test == "held":
+        if weight < 1:
+            raise InvalidInputError(f"task=held takes a weight of 1 or more; got {weight}")
+        return _abreast(weight, friction_force(weight), heading, 0.02, shift)
+    gap = RUN_UP if test == "moved" else 0.0
+    return _abreast(weight + 1, friction_force(weight), heading, gap, shift)
+
+
+def _off_normal(condition: Mapping[str, Any], seed: int) -> float:
+    if condition["task"] == "wedged":
+        return math.radians(float(condition["off_normal_deg"]))
+    return float(np.random.default_rng([seed, 5]).uniform(*WEDGE))
+
+
+def _askew(off_normal: float, seed: int) -> tuple[World, Group, float]:
+    rng = np.random.default_rng([seed, 2])
+    off = float(rng.choice([-1.0, 1.0])) * off_normal
+    bearing = float(rng.uniform(-np.pi, np.pi))
+    world = _hall()
+    world.add_disc(0.0, 0.0, RADIUS, friction_force(1))
+    away = RADIUS + RoundPusher.radius + 0.01
+    pose = [-away * math.cos(bearing), -away * math.sin(bearing), bearing + off]
+    return world, world.add_group(RoundPusher, [pose]), bearing + off
 
 
 def _heading(condition: Mapping[str, Any], seed: int) -> float:
@@ -152,13 +158,9 @@ def _hall() -> World:
     return World(bounds=[-8, -8, 8, 8], wall_height=0.3, floor="concrete")
 
 
-def _simulate(world: World, condition: Mapping[str, Any]) -> Simulation:
-    return Simulation(world, control_period=PERIOD, dt_max=float(condition["dt_ms"]) / 1000.0)
-
-
-def _scene(
-    condition: Mapping[str, Any], n: int, force: float, heading: float, gap: float, shift: float
-) -> tuple[Simulation, Group]:
+def _abreast(
+    n: int, force: float, heading: float, gap: float, shift: float
+) -> tuple[World, Group, float]:
     """A disc and ``n`` robots abreast behind it, all heading the same way, ``gap`` [m] off it.
 
     Their middle is ``shift`` [m] left of the line through the disc's middle.
@@ -169,8 +171,14 @@ def _scene(
     behind = np.sqrt((RADIUS + RoundPusher.radius) ** 2 - aside**2) + gap
     c, s = math.cos(heading), math.sin(heading)
     x, y = -c * behind - s * aside, -s * behind + c * aside
-    robots = world.add_group(RoundPusher, np.column_stack([x, y, np.full(n, heading)]))
-    return _simulate(world, condition), robots
+    poses = np.column_stack([x, y, np.full(n, heading)])
+    return world, world.add_group(RoundPusher, poses), heading
+
+
+def _simulate(condition: Mapping[str, Any], seed: int) -> tuple[Simulation, Group, float]:
+    world, robots, heading = scene(condition, seed)
+    dt = float(condition["dt_ms"]) / 1000.0
+    return Simulation(world, control_period=PERIOD, dt_max=dt), robots, heading
 
 
 def _straight_on(simulation: Simulation, robots: Group, duration: float) -> Array:

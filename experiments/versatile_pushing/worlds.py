@@ -3,7 +3,6 @@
 Sizes, weights and speeds did not survive in the paper; those here are ours (one unit is 1 m).
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +11,6 @@ from numpy.typing import NDArray
 
 from experiments.versatile_pushing.pushing import friction_force
 from mjmr.disc import let_discs_sleep
-from mjmr.errors import InvalidInputError
 from mjmr.group import Group
 from mjmr.randomness import Streams
 from mjmr.robots.round_pusher import RoundPusher
@@ -204,22 +202,3 @@ def around(disc: Any, robots: int, rng: np.random.Generator) -> Array:
     distance = LARGE + _STAND + 0.1 * shift
     x, y = disc[0] + distance * np.cos(angles), disc[1] + distance * np.sin(angles)
     return np.column_stack([x, y, angles + np.pi])
-
-
-def world(condition: Mapping[str, Any]) -> World:
-    """World of a condition, for ``mjmr mjcf``.
-
-    Raises:
-        InvalidInputError: A check, whose world exists in its trial only.
-    """
-    if condition["task"] not in TASKS:
-        raise InvalidInputError(
-            f"there is a world to write for task={', '.join(TASKS)}; got {condition['task']}"
-        )
-    return build(
-        condition["task"],
-        robots=condition["robots"],
-        weight=condition["weight"],
-        map_seed=condition["map"],
-        vision=condition["vision"],
-    )[0]

@@ -30,6 +30,7 @@ class TJPro(Unicycle):
 
     Attributes:
         wheel_radius: [m].
+        trip: From where its infra-red detectors are tripped [m].
         servo_gains: Speed of each robot's left and right servo over what it is told (n, 2), or of
             all of them (2,).
     """
@@ -47,6 +48,7 @@ class TJPro(Unicycle):
     track = 0.13
     effective_track = track
     disc_radius = 0.028
+    trip = 0.10
 
     def __init__(
         self,
@@ -94,7 +96,7 @@ class TJPro(Unicycle):
         """Two infra-red detectors that trip at 0.10 m, polled 10 times a second."""
         from mjmr.sensors.proximity import InfraredProximity
 
-        return {"proximity": InfraredProximity(trip=0.10, rate=10.0)}
+        return {"proximity": InfraredProximity(trip=self.trip, rate=10.0)}
 
     @property
     def always_allowed(self) -> float:

@@ -6,6 +6,7 @@ from shapely.geometry import LineString
 
 from controllers.helping import AvoidPast, PotentialField, VisBug
 from experiments.helping_navigation import point, study
+from experiments.helping_navigation.allowed import check
 from experiments.helping_navigation.published import PUBLISHED
 from experiments.helping_navigation.shortest import VisibilityGraph, office_graph
 from mjmr.conditions import Grid
@@ -97,11 +98,39 @@ def test_a_chain_is_never_in_vain_without_noise():
         assert found["vain"] == 0
 
 
-def test_readings_go_with_robots():
-    with pytest.raises(InvalidInputError, match="literal or chain"):
-        _run(robots=2)
-    with pytest.raises(InvalidInputError, match="literal or chain"):
-        _run(robots=1, reading="chain")
+_FOUR = {"robots": 4, "reading": "chain"}
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"robots": 2}, "one robot has none, several have literal or chain"),
+        ({"reading": "chain"}, "one robot has none, several have literal or chain"),
+        ({"scene": "markers", **_FOUR}, "scene=markers .* allowed with mode=physical"),
+        ({"scene": "markers", "mode": "physical"}, "scene=markers .* allowed with robots=4"),
+        ({"scene": "markers", "mode": "physical", **_FOUR, "noise": True}, "with noise=false"),
+        ({"world": "trap"}, "scene=tour .* world=trap; allowed with world=world1 or world2"),
+        ({**TRAP, "reading": "chain", "world": "world1"}, "scene=trap .* with world=trap"),
+        ({"scene": "chain", **_FOUR, "world": "world2"}, "scene=chain .* with world=world1"),
+        ({"scene": "chain", "robots": 2, "reading": "chain"}, "scene=chain .* with robots=4"),
+        ({"planner": "shortest-path", "scene": "trap", "world": "trap"}, "with scene=tour: it kno"),
+        ({"planner": "shortest-path", **_FOUR}, "shortest-path .* allowed with robots=1"),
+        ({"planner": "shortest-path", "mode": "physical"}, "with mode=point: it knows the map"),
+        ({"fault": "dead"}, "fault=dead is of supporters, .* allowed with robots=2, 3 or 4"),
+        ({"noise": True}, "noise is of supporters"),
+        ({**_FOUR, "err_max": 0.2}, "err_max=0.2 .* allowed with noise=true"),
+        ({"mode": "physical", **_FOUR, "fault": "dead", "world": "world2"}, "with world=world1"),
+        ({**TRAP, "mode": "physical", "reading": "literal", "fault": "dead"}, "nobody to follow"),
+    ],
+)  # fmt: skip
+def test_conditions_that_mean_nothing_are_refused(given, words):
+    with pytest.raises(InvalidInputError, match=words):
+        _run(**given)
+
+
+def test_an_error_of_a_distance_is_a_share():
+    with pytest.raises(InvalidInputError, match=r"err_max must be at most 0.99; got 1.5"):
+        study.condition(err_max=1.5)
 
 
 def test_targets_and_smaller_teams_are_shared():
@@ -150,7 +179,7 @@ def test_the_papers_numbers():
 def test_sizes_are_declared_and_claims_load():
     for size in ("quick", "standard", "full"):
         for condition, _ in study.trials(size):
-            assert (condition["robots"] > 1) == (condition["reading"] != "none")
+            check(condition)
     assert len(study.load_claims()) > 50
 
 

@@ -9,7 +9,7 @@ from controllers.helping.explorer import Settings
 from controllers.helping.frames import to_mine
 from controllers.helping.goal_sharing import CHAIN
 from controllers.perception.markers import Marker, MarkerFinder
-from experiments.helping_navigation import physical, study, words
+from experiments.helping_navigation import study, words
 from experiments.helping_navigation.crew import Crew, CrewSetup
 from experiments.helping_navigation.journey import Journey
 from experiments.helping_navigation.mind import Look, Mind
@@ -249,13 +249,6 @@ def test_a_mate_leads_out_of_the_trap():
     freed = Journey(trap(condition(**given, shares_state=True), 1000, 400.0), 1000)
     assert freed.run()[0].reached
     assert 1 <= freed.minds[0].state.follows[0] <= 10
-
-
-def test_a_planner_that_knows_the_map_is_refused():
-    with pytest.raises(InvalidInputError, match="no robot does"):
-        physical.trial(condition(planner="shortest-path", robots=1, reading="none"), 1000)
-    with pytest.raises(InvalidInputError, match="does not go with reading=none"):
-        physical.trial(condition(reading="none"), 1000)
 
 
 def test_refuses_what_cannot_be():

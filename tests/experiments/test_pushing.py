@@ -20,7 +20,7 @@ BASE = {"weight": 1, "heading_deg": 0.0, "off_normal_deg": 60.0, "dt_ms": 10.0}
 
 
 def run(task, seed=1000, **given):
-    return pushing.TESTS[task](BASE | given, seed)
+    return pushing.TESTS[task]({"task": task} | BASE | given, seed)
 
 
 def weigh(monkeypatch, spare):

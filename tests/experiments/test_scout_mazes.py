@@ -39,6 +39,9 @@ def test_the_four_mazes_are_what_the_card_asks_for():
     for found in mazes.values():  # those drawn since, too
         assert 1.5 <= np.hypot(*(found.goal - found.nest)) <= 3.0
         assert found.free_space().geom_type == "Polygon"
+    assert maze("m1") is maze("m1"), "read and checked once"
+    with pytest.raises(ValueError, match="read-only"):
+        maze("m1").blocks[0] = 0.0
     with pytest.raises(UnknownNameError, match="unknown maze 'm5'; valid: m1, m2, m3, m4"):
         maze("m5")
 

@@ -5,9 +5,10 @@ import pytest
 
 from controllers.scouting import LOOP, UNIT, Behaviour, ScoutTeam
 from experiments.scout_workers.arena import PITCH, yard_slots
+from experiments.scout_workers.field import EXACT, Setting
 from experiments.scout_workers.mazes import maze
 from experiments.scout_workers.physical import PhysicalField
-from experiments.scout_workers.planar import EXACT, PlanarField
+from experiments.scout_workers.planar import PlanarField
 from experiments.scout_workers.run import Plan, run
 from mjmr.errors import InvalidInputError, LiftError, TruthError
 from mjmr.geometry import angle_difference
@@ -20,7 +21,7 @@ FORWARD, BACK, STILL = [UNIT / LOOP, 0.0], [-UNIT / LOOP, 0.0], [0.0, 0.0]
 
 def field(n=1, kind=PhysicalField, seed=1000, **options):
     chosen = {"compass": EXACT, "servo_spread": 0.0} | OPEN | options
-    return kind(n, seed=seed, **chosen)
+    return kind(Setting(n=n, seed=seed, **chosen))
 
 
 def loops(where, commands):
@@ -213,8 +214,8 @@ def test_touches_count_who_meets_whom():
 def trial(seed, n=3, name="m1"):
     m = maze(name)
     where = PhysicalField(
-        n, seed=seed, size=m.size, blocks=m.blocks, nest=m.nest, goal=m.goal
-    )  # fmt: skip
+        Setting(n=n, seed=seed, size=m.size, blocks=m.blocks, nest=m.nest, goal=m.goal)
+    )
     team = ScoutTeam(
         n, rng=Streams(seed).generator("team"),
         behaviour=Behaviour(forced=4, avoid_step=np.radians(45.0), release=5.0),

@@ -70,6 +70,11 @@ def test_a_mode_without_the_experiment_is_refused():
         run(mode="physical", experiment="trap")
 
 
+def test_a_scout_without_a_worker_is_refused():
+    with pytest.raises(InvalidInputError, match="robots"):
+        study.condition(robots=1)
+
+
 def test_the_vector_is_exact_and_a_wrong_reckoning_is_found_out(monkeypatch):
     given = {"experiment": "open", "compass": "exact", "servo_pct": 0.0}
     good = run(**given)

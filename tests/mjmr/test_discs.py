@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mjmr.disc import Disc, let_discs_sleep
-from mjmr.errors import InvalidInputError
+from mjmr.errors import InvalidInputError, SimulationDivergedError
 from mjmr.recording import Recording
 from mjmr.robots.round_pusher import RoundPusher
 from mjmr.sensors.lidar import Lidar
@@ -273,6 +273,51 @@ def test_a_snapshot_with_sleepers_goes_on_with_the_same_bits():
     fresh.restore(snapshot)
     simulation = fresh
     assert go() == once
+
+
+def test_a_lift_that_is_refused_wakes_nobody():
+    """Nothing has happened: the same bits as where nobody tried, and who slept sleeps on."""
+    ends = []
+    for tries in (False, True):
+        simulation, robots = shoved(True)
+        for _ in simulation.ticks(1.5):
+            robots.drive([[0.3, 0.1], [0.5, 0.0]])
+        asleep = simulation.data.tree_asleep.copy()
+        assert (asleep >= 0).any()
+        if tries:
+            x, y = simulation.mover_poses()[2, :2]
+            with pytest.raises(InvalidInputError, match="put down where there is room; disc2"):
+                simulation.lift(robots, [1], [[x, y, 0.0]])
+            np.testing.assert_array_equal(simulation.data.tree_asleep, asleep)
+        for _ in simulation.ticks(1.0):
+            robots.drive([[0.3, 0.1], [0.5, 0.0]])
+        ends.append(simulation.mover_poses().tobytes() + simulation.poses_of(robots).tobytes())
+    assert ends[0] == ends[1]
+
+
+def test_the_last_seconds_before_a_divergence_are_whole_snapshots():
+    """Also among sleepers: put back, they go on with the bits they went on with."""
+    simulation, robots = shoved(True)
+
+    def see(seconds, until=None):
+        seen = {}
+        for _ in simulation.ticks(seconds):
+            poses = simulation.mover_poses().tobytes() + simulation.poses_of(robots).tobytes()
+            seen[simulation.step] = poses
+            robots.drive([[0.5, 0.1], [0.5, 0.0]])
+            if until is not None and simulation.time > until:
+                simulation.data.qpos[0] = np.nan
+        return seen
+
+    seen = see(3.0)
+    with pytest.raises(SimulationDivergedError) as caught:
+        see(1.0, until=3.05)
+    for snapshot in caught.value.snapshots[:-1]:
+        simulation.restore(snapshot)
+        again = see(2.9 - simulation.time)
+        assert len(again) > 2
+        assert all(seen[step] == poses for step, poses in again.items())
+    assert (simulation.data.tree_asleep >= 0).any()
 
 
 def test_rays_meet_discs_that_sleep():

@@ -139,7 +139,7 @@ def test_a_lift_that_is_refused_moves_nothing():
     for poses, words in (
         ([[x + 0.1, y, 0.0]], r"put down where there is room; tj_pro0 and tj_pro1 by \d+ mm"),
         ([[2.0, 1.8, 0.0]], "put down where there is room; box0 and tj_pro0 by"),
-        ([[2.95, 0.0, 0.0]], "outside the walls or touch them: tj_pro0 by 40 mm"),
+        ([[2.95, 0.0, 0.0]], "are put down outside the walls or touch them: tj_pro0 by 40 mm"),
         ([[0.0, 0.0]], r"shape \(1, 3\) and is finite; got shape \(1, 2\)"),
         ([[0.0, np.nan, 0.0]], "is finite"),
     ):

@@ -24,11 +24,41 @@ def test_marks_are_painted_and_felt_by_nothing():
 
 @pytest.mark.parametrize(
     "sides",
-    [{}, {"radius": -1.0}, {"length": 1.0}, {"radius": 1.0, "length": 1.0, "width": 1.0}],
-)
+    [{}, {"radius": -1.0}, {"radius": np.nan}, {"radius": np.inf}, {"length": np.inf, "width": 1.0},
+     {"length": 1.0}, {"radius": 1.0, "length": 1.0, "width": 1.0}],
+)  # fmt: skip
 def test_a_mark_without_extent_is_refused(sides):
     with pytest.raises(InvalidInputError, match="a mark has a positive radius, or"):
         World.rectangle(4.0, 4.0).add_mark(0.0, 0.0, **sides)
+
+
+def test_a_mark_that_is_nowhere_is_refused():
+    world = World.rectangle(4.0, 4.0)
+    with pytest.raises(InvalidInputError, match="place, yaw and colour must be finite"):
+        world.add_mark(np.nan, 0.0, radius=0.1)
+    with pytest.raises(InvalidInputError, match="place, yaw and colour must be finite"):
+        world.add_mark(0.0, 0.0, length=1.0, width=1.0, yaw=np.nan)
+    with pytest.raises(InvalidInputError, match=r"within the walls, x -2 to 2 .* got \(2.5, 0\)"):
+        world.add_mark(2.5, 0.0, radius=0.1)
+    assert not world.marks
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"start": (1.0, 2.0, 3.0)}, r"a wall's start must be two finite numbers \(x, y\); got"),
+        ({"start": 1.0}, "a wall's start must be"),
+        ({"end": (np.nan, 1.0)}, r"a wall's end must be two finite numbers .* got \(nan, 1.0\)"),
+        ({"end": ((1.0, 2.0), (3.0,))}, "a wall's end must be"),
+        ({"thickness": np.nan}, "thickness must be positive and finite; got nan m"),
+        ({"thickness": 0.0}, "thickness must be positive and finite; got 0.0 m"),
+    ],
+)
+def test_a_wall_that_cannot_be_is_refused(given, words):
+    world = World.rectangle(10.0, 10.0)
+    with pytest.raises(InvalidInputError, match=words):
+        world.add_wall(**({"start": (0.0, 0.0), "end": (1.0, 0.0)} | given))
+    assert not world.props
 
 
 def test_a_wall_stands_along_its_line():

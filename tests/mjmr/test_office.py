@@ -64,6 +64,9 @@ def test_a_sound_file_is_read(tmp_path):
         (lambda g: g["rooms"][0].__setitem__("goal", [0.0, 1, 0.2, 5]), "room 0 .*cannot get"),
         (lambda g: g["routes"].append([[2, 1], [8, 1]]), "route 1 .*crosses a wall.*wall 4"),
         (lambda g: g["routes"].append([[2, 1]]), "route 1 .*two waypoints"),
+        (lambda g: g["routes"].append(7), r"route 1 \(line \d+\) needs two waypoints.*not 7"),
+        (lambda g: g["routes"].append("far"), r"route 1 \(line \d+\) needs two waypoints"),
+        (lambda g: g["routes"][0].append([5]), r"waypoint 2 \(line \d+\).*2 numbers, not \[5\]"),
         (lambda g: g["walls"].append([1, 1, 1, 1]), "wall 6 .*no length"),
         (lambda g: g["walls"].append([1, 1, 11, 1]), "wall 6 .*leaves"),
         (lambda g: g["walls"].append([1, 1, "x", 1]), "wall 6 .*4 numbers"),
@@ -88,6 +91,17 @@ def test_the_line_named_is_the_entrys(tmp_path):
     line = int(str(e.value).partition("(line ")[2].partition(")")[0])
     assert text.splitlines()[line - 1].strip() == "["
     assert '"routes"' in text.splitlines()[line - 2]
+
+
+def test_the_line_of_a_waypoint_is_named(tmp_path):
+    path = tmp_path / "office.json"
+    text = json.dumps(ROOM, indent=1).replace("8,\n    3", '8,\n    "x"')
+    path.write_text(text)
+    with pytest.raises(InvalidInputError, match=r"waypoint 1 \(line \d+\), which must be") as e:
+        load_office(path)
+    line = int(str(e.value).rpartition("(line ")[2].partition(")")[0])
+    lines = [row.strip() for row in text.splitlines()]
+    assert lines[line - 1 : line + 2] == ["[", "8,", '"x"']
 
 
 def test_not_an_office(tmp_path):

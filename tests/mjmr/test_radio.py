@@ -246,6 +246,25 @@ def test_after_a_restore_positions_are_looked_at_afresh():
     assert speak_after(0.0) == 1
 
 
+@pytest.mark.parametrize("kind", BOTH)
+def test_after_a_lift_positions_are_looked_at_afresh(kind):
+    """Within one physics step: an observer sends, lifts and sends again."""
+    simulation, radio, groups = row(2, apart=1.5, kind=kind, range=2.0)
+
+    def move():
+        if simulation.step == 0:
+            radio.send(0, b"near", 1)
+            simulation.lift(groups[1], [0], [[0.0, 1.5, 0.0]])
+            radio.send(0, b"still near", 1)
+            simulation.lift(groups[1], [0], [[2.3, 0.0, 0.0]])
+            radio.send(0, b"far", 1)
+
+    simulation.observe(move)
+    for _ in simulation.ticks(0.2):
+        pass
+    assert [m.payload for m in radio.receive(1)] == [b"near", b"still near"]
+
+
 def test_a_snapshot_needs_the_same_radios():
     simulation, _, _ = row(2)
     snapshot = simulation.snapshot()

@@ -261,3 +261,53 @@ def test_average_consensus_keeps_the_sum_and_ends_at_the_mean():
     assert np.ptp(service.estimate) < 1e-6
     with pytest.raises(InvalidInputError, match="0 hears 1, who does not hear it"):
         metropolis_gains(np.triu(np.ones((2, 2))))
+
+
+def test_a_state_is_advanced_the_same_the_second_time_and_transitions_are_not_written_to():
+    model = CanonicalModel([2, 1, 3])
+    gains = equal_gains(np.ones((3, 3)))
+    state = np.random.default_rng(5).normal(size=(6, 2))
+    first = model.advance(state, gains, 0.7)
+    assert (model.advance(state, gains, 0.7) == first).all()
+    assert not np.allclose(model.advance(state, gains, 0.8), first)
+    assert not np.allclose(model.advance(state, neighbour_gains(gains > 0, 0.1), 0.7), first)
+    with pytest.raises(ValueError, match="read-only"):
+        model.transition(gains, 0.7)[0, 0] = 1.0
+
+
+@pytest.mark.parametrize("method", ["advance", "input_of"])
+@pytest.mark.parametrize(
+    ("state", "gains", "said"),
+    [
+        (np.zeros((5, 2)), LEADER_1, r"a stacked state has shape \(6, m\); got \(5, 2\)"),
+        (np.zeros(6), LEADER_1, "a stacked state has shape"),
+        (np.zeros((6, 2)), np.eye(2), r"have shape \(3, 3\) or \(2, 3, 3\); got \(2, 2\)"),
+        (np.zeros((6, 2)), [LEADER_1] * 3, "gains of 2 channels"),
+        (np.zeros((6, 2)), LEADER_1 * 2, "sum"),
+        (np.zeros((6, 2)), [LEADER_1, LEADER_1 * 2], "sum"),
+        (np.zeros((6, 2)), [[1, 0, 0], [1]], "gains are numbers in rows of one length"),
+    ],
+)
+def test_states_and_gains_that_cannot_be_say_so(method, state, gains, said):
+    more = (1.0,) if method == "advance" else ()
+    with pytest.raises(InvalidInputError, match=said):
+        getattr(CanonicalModel([2, 2, 2]), method)(state, gains, *more)
+
+
+def test_the_relative_form_checks_its_gains():
+    with pytest.raises(InvalidInputError, match="sum"):
+        acceleration(np.zeros((3, 2)), np.zeros((3, 3, 2)), LEADER_1 * 2)
+
+
+def test_ragged_graphs_and_graphs_of_different_sizes_are_refused():
+    with pytest.raises(InvalidInputError, match="rows of one length"):
+        rooted([[1, 0], [1]])
+    with pytest.raises(InvalidInputError, match="got graphs of 2 and 3"):
+        check_structure([np.eye(2), np.eye(3)], [np.eye(2), np.eye(3)])
+
+
+def test_average_consensus_hands_out_copies():
+    consensus = AverageConsensus([1.0, 3.0])
+    found = consensus.step(np.ones((2, 2)))
+    found[:] = 99.0
+    assert consensus.step(np.ones((2, 2))) == pytest.approx([2.0, 2.0])

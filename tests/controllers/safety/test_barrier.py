@@ -115,6 +115,55 @@ def test_an_impossible_program_brakes_is_counted_and_goes_on():
     assert (filter.solved, filter.infeasible) == (1, 1)
 
 
+def test_one_pair_deep_in_each_other_makes_everybody_brake_and_is_counted():
+    filter = BarrierFilter(3, RING)
+    position = np.array([[0.0, 0.0], [0.05, 0.0], [5.0, 5.0]])
+    wish = np.array([[0.0, 0.0], [0.0, 0.0], [0.2, 0.0]])
+    # asked for: 2 |d| |u_i - u_j| >= gamma (D^2 - d^2) = 0.6, possible: 0.1
+    for _ in range(3):
+        assert (filter.filter(position, wish) == 0).all()
+    assert (filter.solved, filter.infeasible) == (0, 3)
+    assert filter.changed == pytest.approx([0, 0, 0.2])
+    position[1, 0] = 0.5  # shallow: 0.1 against 1.0
+    found = filter.filter(position, wish)
+    assert (filter.solved, filter.infeasible) == (1, 3)
+    assert found[1, 0] - found[0, 0] >= 0.105 - 2e-3
+    assert found[2] == pytest.approx(wish[2], abs=1e-3)
+
+
+def test_what_a_solver_out_of_time_found_counts_only_if_it_keeps_the_rows():
+    rng = np.random.default_rng(0)
+    config = BarrierConfig(distance=0.55, rate=2.0, top_speed=0.5, max_iterations=25)
+    i, j = np.triu_indices(6, 1)
+    taken = refused = 0
+    for _ in range(100):
+        position, wish = rng.uniform(-1, 1, (6, 2)), rng.uniform(-0.5, 0.5, (6, 2))
+        filter = BarrierFilter(6, config)
+        found = filter.filter(position, wish)
+        if filter.infeasible:
+            assert (found == 0).all()
+            refused += 1
+            continue
+        apart = position[i] - position[j]
+        gap = (apart**2).sum(axis=1) - 0.55**2
+        rate = 2 * (apart * (found[i] - found[j])).sum(axis=1)
+        assert (rate >= -2.0 * gap - 1.5e-3).all()
+        taken += 1
+    assert taken > 5
+    assert refused > 5
+
+
+def test_lists_are_accepted():
+    config = BarrierConfig(distance=0.5, obstacles=1)
+    filter = BarrierFilter(2, config)
+    found = filter.filter([[0, 0], [3, 0]], [[0.1, 0], [0, 0.1]], [[[0, 9.0]], [[3, 9.0]]])
+    assert found == pytest.approx(np.array([[0.1, 0], [0, 0.1]]), abs=1e-3)
+    with pytest.raises(InvalidInputError, match="position must be finite"):
+        filter.filter([[0, 0], [3]], [[0, 0], [0, 0]])
+    with pytest.raises(InvalidInputError, match="obstacles have shape"):
+        filter.filter([[0, 0], [3, 0]], [[0, 0], [0, 0]], [[[0, 9.0]], [[3]]])
+
+
 def test_the_same_inputs_give_the_same_bits():
     runs = []
     for _ in range(2):
@@ -129,7 +178,10 @@ def test_the_same_inputs_give_the_same_bits():
     [
         ({"distance": 0.0}, "must be positive"),
         ({"rate": -1.0}, "must be positive"),
-        ({"clearance": -0.1}, "0 or more"),
+        ({"clearance": -0.1}, "clearance is 0 or more"),
+        ({"obstacles": 1.5}, "obstacles is a whole number, 0 or more; got 1.5"),
+        ({"obstacles": -1}, "obstacles is a whole number"),
+        ({"max_iterations": 10.5}, "max_iterations is a whole number"),
     ],
 )
 def test_numbers_are_checked(change, said):
