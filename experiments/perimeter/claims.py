@@ -23,6 +23,7 @@ PLAIN = {
     "spacing": "repaired", "factor": 0.0, "estimated": False, "gain": "soft", "failure": "none",
     "wrong": 0.0,
 }  # fmt: skip
+_ALL = ("quick", "standard", "full")
 _JOIN = {**PLAIN, "task": "join", "radius": 10.0, "growth": 0.0}
 _STAY = {**PLAIN, "task": "stay", "start": "bunch", "radius": 10.0, "growth": 0.0,
          "duration": 600.0}  # fmt: skip
@@ -56,6 +57,7 @@ def _envelope() -> list[Claim]:
             "0.5 s; trials with the largest",
             bound=Bound("<=", 0.305),
             unit="rad/s",
+            sizes=_ALL,
             needs=driven,
             evaluate=extreme("top_turn"),
         ),
@@ -66,6 +68,7 @@ def _envelope() -> list[Claim]:
             how="the same: largest speed of the rear axle's middle over 0.5 s",
             bound=Bound("<=", 2.0, tolerance=0.005),
             unit="m/s",
+            sizes=_ALL,
             needs=driven,
             evaluate=extreme("top_speed"),
         ),
@@ -76,6 +79,7 @@ def _envelope() -> list[Claim]:
             how="radius of the circle at 1 m/s and 0.3 rad/s; largest of trials",
             bound=Bound.within(3.0, 3.67),
             unit="m",
+            sizes=_ALL,
             needs=driven,
             evaluate=extreme("radius_m"),
         ),

@@ -15,8 +15,8 @@ from mjmr.film_options import FilmOptions
 from mjmr.recording import Recording, record
 from mjmr.study import Study
 
-SECONDS = 150.0
-SPEED = 25.0  # simulated seconds a second, unless asked otherwise
+SECONDS = 120.0
+SPEED = 30.0  # simulated seconds a second, unless asked otherwise
 TRAIL = 60.0  # s
 _SEED = 0
 _EYE = 0  # truck whose camera is shown

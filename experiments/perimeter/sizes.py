@@ -50,14 +50,14 @@ def grids(join: int, few: int, sweep: int) -> tuple[Grid, ...]:
 QUICK = Size(
     "quick",
     grids=(
-        Grid(task="stay", start="bunch", mode="unicycle", duration=60.0, seeds=1),
-        Grid(task="stay", start="bunch", duration=45.0, seeds=1),
+        Grid(task="stay", start="bunch", mode="unicycle", duration=30.0, seeds=1),
+        Grid(task="stay", start="bunch", duration=30.0, seeds=1),
         Grid(task="formation", path="circle", duration=45.0, seeds=1),
         Grid(task="envelope", seeds=1),
     ),
     default_seeds=1,
     expected_minutes=0.3,
-    note="a minute of tracking, a circle of three, one truck's limits; decides few claims",
+    note="half a minute of tracking, a circle of three, one truck's limits; decides few claims",
 )
 STANDARD = Size("standard", grids=grids(20, 3, 8), default_seeds=3, expected_minutes=15.0)
 FULL = Size(
