@@ -50,7 +50,14 @@ def formation(condition: Mapping[str, Any], seed: int) -> dict[str, Any]:
             command = np.zeros((3, 2))
             command[0] = leads
             if radio.messages_sent.any() and np.isfinite(pose).all():
-                heard = radio.latest()[0][1:, 0]  # what each follower heard of the leader
+                told, sent = radio.latest()
+                heard, age = (
+                    told[1:, 0],
+                    now - sent[1:, 0],
+                )  # what each follower heard of the leader
+                # where the leader has got to since, by the speeds it tells
+                heard[:, 2] += heard[:, 4] * age
+                heard[:, :2] += rotate(np.column_stack([heard[:, 3] * age, 0.0 * age]), heard[:, 2])
                 way = rotate(heard[:, :2] - pose[1:, :2], -pose[1:, 2])
                 seen = np.column_stack([way, wrap_angle(heard[:, 2] - pose[1:, 2])])
                 for k in range(2):
