@@ -17,6 +17,7 @@ PERIOD = 0.1
 SPEED = 0.8  # m/s, of the leader
 RADIUS = 10.0  # m, of the circle and of the eight's two
 SEPARATION, BEARINGS = 2.0, np.radians([150.0, -150.0])  # of the two followers
+RAMP = 8.0  # s, in which the leader's curvature changes
 SETTLE = 30.0  # s, until which errors do not count
 AHEAD = 0.3  # m, of the followers' reference point before the axle
 
@@ -73,8 +74,13 @@ def _turn(path: str, now: float) -> float:
     if path == "straight" or now < 10.0:
         return 0.0
     lap = 2.0 * np.pi * RADIUS / SPEED
-    left = path == "circle" or (now - 10.0) % (2.0 * lap) < lap
-    return SPEED / RADIUS * (1.0 if left else -1.0)
+    rise = min(1.0, (now - 10.0) / RAMP)
+    if path == "circle":
+        return SPEED / RADIUS * rise
+    # an eight has no corners: from one circle to the other the curvature goes through nought
+    since = (now - 10.0) % (2.0 * lap)
+    way = min(since, abs(since - lap), 2.0 * lap - since) / (RAMP / 2.0)
+    return SPEED / RADIUS * min(rise, way, 1.0) * (1.0 if since < lap else -1.0)
 
 
 def _errors(track: np.ndarray) -> dict[str, float]:
