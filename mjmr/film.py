@@ -3,11 +3,12 @@
 import copy
 import dataclasses
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
+import cv2
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
@@ -16,13 +17,17 @@ from mjmr.errors import InvalidInputError
 from mjmr.film_options import FilmOptions
 from mjmr.footage import Footage
 from mjmr.overlay import draw_notes, draw_text, draw_trails, palette
+from mjmr.pillar import Pillars
 from mjmr.recording import Recording
 from mjmr.render import Renderer
 from mjmr.video import VideoWriter
 
 MAX_SECONDS = 60.0
+Picture = NDArray[np.uint8]
 _HEADER = 44
 _TRAIL_POINTS = 400
+_PILLAR_SIDES = 64  # of round shapes where there are large ones
+_EYE_SIDES = 360  # the same from near
 
 
 class Film:
@@ -31,19 +36,50 @@ class Film:
     def __init__(self, title: str, options: FilmOptions | None = None):
         """Args: title: Written at the top. options: How it looks."""
         self.title, self.options = title, options or FilmOptions()
-        self._panels: list[tuple[Footage, str, FilmOptions]] = []
+        self._panels: list[tuple[Any, ...]] = []
 
-    def add(self, shown: Recording | Footage, label: str = "", **changes: Any) -> None:
+    def add(
+        self,
+        shown: Recording | Footage,
+        label: str = "",
+        area: Sequence[float] | None = None,
+        **changes: Any,
+    ) -> None:
         """Add a panel to the right of those there are: what has been recorded by now.
 
         Args:
             shown: Recording or footage.
             label: Written in its corner.
+            area: What ``overview`` and ``corner`` show (xmin, ymin, xmax, ymax) [m] in place of the
+                whole world.
             changes: Of the film's options, for this panel: ``camera``, ``follow`` and
                 ``trail``.
         """
         footage = shown.footage() if isinstance(shown, Recording) else shown
-        self._panels.append((footage, label, dataclasses.replace(self.options, **changes)))
+        if area is not None:
+            footage = dataclasses.replace(footage, bounds=np.array(area, dtype=np.float64))
+        own = dataclasses.replace(self.options, **changes)
+        self._panels.append((_Panel, footage, label, own))
+
+    def add_eye(
+        self,
+        shown: Recording | Footage,
+        camera: str,
+        label: str = "",
+        paint: Callable[[Picture], Picture] | None = None,
+        size: tuple[int, int] = (320, 240),
+    ) -> None:
+        """Add a panel of what a camera of the model sees, and below what is made of it.
+
+        Args:
+            shown: Recording or footage.
+            camera: Its name in the model: ``robot0/eye`` for one mounted as ``eye``.
+            label: Written in its corner.
+            paint: Makes of a picture (h, w, 3) another one of the same shape; None: only one.
+            size: Width and height of the pictures before they are fitted into the panel [px].
+        """
+        footage = shown.footage() if isinstance(shown, Recording) else shown
+        self._panels.append((_EyePanel, footage, label, (camera, paint, size)))
 
     def write(self, path: str | Path) -> Path:
         """Render every frame and write the file; returns its path.
@@ -70,13 +106,13 @@ class Film:
         return self.options.speed or max(1.0, math.ceil(self._length() / MAX_SECONDS * 10) / 10)
 
     def _length(self) -> float:
-        return max(float(r.times[-1] - r.times[0]) for r, _, _ in self._panels)
+        return max(float(r.times[-1] - r.times[0]) for _, r, _, _ in self._panels)
 
     def _frame_times(self) -> Sequence[float]:
         if not self._panels:
             raise InvalidInputError("a film needs at least one recording")
         seconds = min(self._length() / self.speed, MAX_SECONDS)
-        start = float(self._panels[0][0].times[0])
+        start = float(self._panels[0][1].times[0])
         count = max(1, round(seconds * self.options.fps))
         return [start + k * self.speed / self.options.fps for k in range(count)]
 
@@ -84,7 +120,9 @@ class Film:
         """Whole pictures; the next one is rendered while the caller encodes the last."""
         options, count = self.options, len(self._panels)
         width, height = options.width // count // 2 * 2, options.height - _HEADER
-        panels = [_PanelThread(r, label, width, height, own) for r, label, own in self._panels]
+        panels = [
+            _PanelThread(kind, r, label, width, height, own) for kind, r, label, own in self._panels
+        ]
         try:
             ahead = [panel.picture(times[0]) for panel in panels]
             for k, time in enumerate(times):
@@ -106,9 +144,9 @@ class Film:
 class _PanelThread:
     """A panel and the one thread that may use its GL context."""
 
-    def __init__(self, *arguments: Any):
+    def __init__(self, kind: Any, *arguments: Any):
         self._thread = ThreadPoolExecutor(max_workers=1)
-        self._panel = self._thread.submit(_Panel, *arguments)
+        self._panel = self._thread.submit(kind, *arguments)
 
     def picture(self, time: float) -> "Future[NDArray[np.uint8]]":
         return self._thread.submit(lambda: self._panel.result().picture(time))
@@ -188,8 +226,10 @@ class _Panel:
         if options.look == "draft":
             _boxes_for_planes(self._model)
         self._data = mujoco.MjData(self._model)
+        self._pillars = Pillars(self._model)
         self._colours = palette(len(footage.radii))
-        self._renderer = Renderer(self._model, width, height, options.look)
+        sides = _PILLAR_SIDES if self._pillars.any else 0
+        self._renderer = Renderer(self._model, width, height, options.look, sides)
         self._azimuth: float | None = None
         whole = corner_camera if options.camera == "corner" else overview_camera
         self._whole = whole(footage.bounds, width / height, self._model)
@@ -205,6 +245,7 @@ class _Panel:
         mujoco.mj_camlight(model, data)
         mujoco.mj_tendon(model, data)
         renderer = self._renderer
+        self._pillars.resize(renderer.model, float(times[index]))
         image = renderer.picture(data, self._camera(index))
         view = renderer.view()
         rows = self._trail_rows(index)
@@ -248,6 +289,46 @@ class _Panel:
         camera.distance, camera.elevation = 1.3, -28.0
         camera.azimuth = math.degrees(azimuth)
         return camera
+
+    def close(self) -> None:
+        self._renderer.close()
+
+
+class _EyePanel:
+    """What a camera of the model sees, and below it what is made of that."""
+
+    def __init__(self, footage: Footage, label: str, width: int, height: int, options: Any):
+        self._camera, self._paint, size = options
+        self._footage, self._label = footage, label
+        self._width, self._height = width, height
+        model = footage.model
+        self._data = mujoco.MjData(model)
+        self._pillars = Pillars(model)
+        sides = _EYE_SIDES if self._pillars.any else 0
+        self._renderer = Renderer(model, *size, sides=sides)
+
+    def picture(self, time: float) -> Picture:
+        """Picture at ``time`` [s], RGB."""
+        footage, data = self._footage, self._data
+        index = min(int(np.searchsorted(footage.times, time - 1e-9)), len(footage.times) - 1)
+        data.qpos[:] = footage.positions[index]
+        mujoco.mj_kinematics(footage.model, data)
+        mujoco.mj_camlight(footage.model, data)
+        self._pillars.resize(self._renderer.model, float(footage.times[index]))
+        seen = self._renderer.picture(data, self._camera)
+        shown = [seen] if self._paint is None else [seen, self._paint(seen)]
+        canvas = np.full((self._height, self._width, 3), 24, dtype=np.uint8)
+        room = self._height // len(shown)
+        scale = min(self._width / seen.shape[1], (room - 8) / seen.shape[0])
+        w, h = round(seen.shape[1] * scale), round(seen.shape[0] * scale)
+        left = (self._width - w) // 2
+        for k, picture in enumerate(shown):
+            top = k * room + (room - h) // 2
+            canvas[top : top + h, left : left + w] = cv2.resize(
+                picture, (w, h), interpolation=cv2.INTER_NEAREST
+            )
+        draw_text(canvas, self._label, (14, 26), 0.6)
+        return canvas
 
     def close(self) -> None:
         self._renderer.close()

@@ -18,6 +18,7 @@ from mjmr.team import Team
 from mjmr.watch import announce
 
 if TYPE_CHECKING:
+    from mjmr.bus import Bus
     from mjmr.byte_radio import ByteRadio
     from mjmr.group import Group
     from mjmr.radio import Radio
@@ -103,6 +104,7 @@ class TickedSimulation(ABC):
         diverged: True once the physics has left the plausible range.
         actuated: Sensors that move parts of the robots.
         radios: By name, in the order they were set up.
+        buses: In the order they were set up; part of snapshots.
         message_followers: Called by radios with every message: when sent [s], when delivered (k,)
             [s] or NaN, sender, receivers (k,), bytes. For traces.
         lift_followers: Called with every :meth:`lift`: robots' indices in the team (k,), poses
@@ -134,6 +136,7 @@ class TickedSimulation(ABC):
         self.diverged = False
         self.actuated: list[Actuated] = []
         self.radios: dict[str, Radio | ByteRadio] = {}
+        self.buses: list[Bus] = []
         self.message_followers: list[Callable[[float, Array, int, Any, int], None]] = []
         self.lift_followers: list[Callable[[Any, Array], None]] = []
         self._observers: list[Callable[[], None]] = []
@@ -339,7 +342,7 @@ class TickedSimulation(ABC):
 
     def _owners(self) -> Sequence[Any]:
         """Who has a state besides the physics, in the order of a snapshot's parts."""
-        return [*self.world.groups, *self._sensors, *self.radios.values()]
+        return [*self.world.groups, *self._sensors, *self.radios.values(), *self.buses]
 
     @abstractmethod
     def poses_of(self, group: "Group") -> Array:

@@ -21,6 +21,7 @@ from mjmr.errors import GL_ADVICE, MissingGLError, UnknownNameError
 from mjmr.film_options import LOOKS
 from mjmr.geometry import Pinhole
 
+_HIDDEN = 5  # a group that no picture shows
 _LAMP_QUADS = 8  # pieces along each side of a flat shape
 # renderers set aside, with the threads that may free them
 _forgotten: list[tuple[int, mujoco.Renderer]] = []
@@ -30,7 +31,9 @@ _open: "weakref.WeakSet[Renderer]" = weakref.WeakSet()
 class Renderer:
     """Renders RGB pictures; ``draft`` without shadows and anti-aliasing, ``fine`` with both."""
 
-    def __init__(self, model: mujoco.MjModel, width: int, height: int, look: str = "draft"):
+    def __init__(
+        self, model: mujoco.MjModel, width: int, height: int, look: str = "draft", sides: int = 0
+    ):
         """Open an off-screen context.
 
         Args:
@@ -38,6 +41,7 @@ class Renderer:
             width: [px].
             height: [px].
             look: One of ``LOOKS``.
+            sides: Of what stands for a circle; 0: what the look has.
 
         Raises:
             MissingGLError: No OpenGL; the message says what to install.
@@ -57,6 +61,8 @@ class Renderer:
             lamps = model.light_type != mujoco.mjtLightType.mjLIGHT_DIRECTIONAL
             quality.numquads = _LAMP_QUADS if lamps.any() else 1
             quality.shadowsize = 0  # the map would take 64 MiB in every context
+        if sides:
+            quality.numslices = sides
         _free_forgotten()
         try:
             self._renderer = mujoco.Renderer(model, height, width)
@@ -72,6 +78,9 @@ class Renderer:
         self._option = mujoco.MjvOption()
         self._option.geomgroup[:] = (1, 1, 0, 0, 0, 0)
         self._option.sitegroup[:] = 0
+        self._groups = model.geom_group.copy()
+        # planes have no bounding sphere: they may be seen from everywhere
+        self._radii = np.where(model.geom_rbound > 0, model.geom_rbound, np.inf)
 
     def picture(self, data: mujoco.MjData, camera: Any) -> NDArray[np.uint8]:
         """RGB picture, shape (height, width, 3), a new array.
@@ -107,12 +116,35 @@ class Renderer:
 
     def _aim(self, data: mujoco.MjData, camera: Any) -> None:
         _free_forgotten()
+        self._leave_out(data, camera)
         self._renderer.update_scene(data, camera, scene_option=self._option)
         flags = self._renderer.scene.flags
         flags[mujoco.mjtRndFlag.mjRND_SHADOW] = self._fine
         flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = 0
         flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = 0
         flags[mujoco.mjtRndFlag.mjRND_HAZE] = 0
+
+    def _leave_out(self, data: mujoco.MjData, camera: Any) -> None:
+        """Hide what is wholly outside of what a camera of the model sees.
+
+        MuJoCo hands all shapes to OpenGL: of five trucks, seen by one with round shapes of 360
+        sides, drawing took ten times as long. Where there are shadows, whoever casts one counts.
+        """
+        model = self.model
+        if self._fine or not isinstance(camera, (int, np.integer, str)):
+            model.geom_group[:] = self._groups
+            return
+        index = model.camera(camera).id
+        turn = data.cam_xmat[index].reshape(3, 3)
+        x, y, z = (data.geom_xpos - data.cam_xpos[index]).dot(turn).T
+        up = np.radians(model.cam_fovy[index]) / 2.0
+        aside = np.arctan(np.tan(up) * self.width / self.height)
+        # MuJoCo's cameras look along -z; a little more than what is needed
+        reach = 1.01 * self._radii + 0.01
+        seen = z < reach
+        for across, angle in ((x, aside), (y, up)):
+            seen &= np.abs(across) * np.cos(angle) + z * np.sin(angle) < reach
+        model.geom_group[:] = np.where(seen, self._groups, _HIDDEN)
 
     def view(self) -> Pinhole:
         """Camera of the last picture, in the world frame."""

@@ -17,6 +17,7 @@ from mjmr.guard import plausible
 from mjmr.last_second import LastSecond
 from mjmr.lift import Lifter
 from mjmr.loop import Snapshot, TickedSimulation
+from mjmr.pillar import Pillars
 from mjmr.prop_places import PropPlaces
 from mjmr.robots.platform import CheckedDrive, FramedDrive, TiltedDrive
 from mjmr.start_check import check_start, overlaps
@@ -102,6 +103,8 @@ class Simulation(TickedSimulation):
         self._lifters: dict[int, Lifter] = {}
         self._sleeps = bool(self.model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP)
         self._movers = PropPlaces(self.model, world)
+        self._pillars = Pillars(self.model)
+        self._pillars.resize(self.model, 0.0)
         for group, drive in self._each:
             drive.place(data, group.start)
         self._carts = CartServos(self.model, world) if world.carts else None
@@ -159,10 +162,10 @@ class Simulation(TickedSimulation):
         """MuJoCo's ``qpos``, shape (nq,), a copy."""
         return self.data.qpos.copy()
 
-    def visible_state(self) -> tuple[Array, Array, Array]:
-        """Joint positions, and positions and quaternions of mocap bodies."""
+    def visible_state(self) -> tuple[float, Array, Array, Array]:
+        """Time, joint positions, and positions and quaternions of mocap bodies."""
         data = self.data
-        return data.qpos.copy(), data.mocap_pos.copy(), data.mocap_quat.copy()
+        return self.time, data.qpos.copy(), data.mocap_pos.copy(), data.mocap_quat.copy()
 
     def watch_steps(self, watcher: Callable[[], None]) -> None:
         """Call ``watcher`` after every physics step; for meters of contact, which are brief."""
@@ -206,6 +209,8 @@ class Simulation(TickedSimulation):
             sensor.actuate(data, period)
         if self._carts is not None:
             self._carts.drive(data, time, period)
+        if self._pillars.change:
+            self._pillars.resize(self.model, time)
 
     def _owners(self) -> Sequence[Any]:
         return [*super()._owners(), *self._framed]

@@ -1,4 +1,4 @@
-"""World: floor, walls, boxes, balls, discs and robots, declared once and built into an MjSpec.
+"""World: floor, walls, props and robots, declared once and built into an MjSpec.
 
 The declaration is what planners, meters and films read; the MjSpec is built from it when a
 simulation or a film needs one, so that a kinematic run loads no MuJoCo.
@@ -18,6 +18,7 @@ from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.group import Group
 from mjmr.mark import Mark
 from mjmr.materials import check_material
+from mjmr.pillar import Pillar
 
 if TYPE_CHECKING:
     import mujoco
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
 FLOORS = ("carpet", "concrete")
 LIGHTINGS = ("even", "uneven")
-_PROPS = ("box", "ball", "cart", "disc")  # what named_props() calls them, before a number
+_PROPS = ("box", "ball", "cart", "disc", "pillar")  # what named_props() calls them, before a number
 _GROUP_NAME = re.compile(rf"(?!({'|'.join(_PROPS)})\d*$)[^/]+")
 
 
@@ -116,7 +117,7 @@ class World:
     Attributes:
         bounds: Inner faces of the wall (4,) [m].
         field: Marked playing field (4,) [m], or None.
-        props: Boxes, balls, carts and discs, in order of declaration.
+        props: Boxes, balls, carts, discs and pillars, in order of declaration.
         marks: Painted on the floor.
         groups: Robots, in order of declaration.
         sensors: Cameras and other sensors that stand in the world, by name.
@@ -162,7 +163,7 @@ class World:
         check_material(wall_material)
         self.floor, self.lighting, self.overlap = floor, lighting, overlap
         self.wall_material = wall_material
-        self.props: list[Box | Ball | Cart | Disc] = []
+        self.props: list[Box | Ball | Cart | Disc | Pillar] = []
         self.groups: list[Group] = []
         self.sensors: dict[str, Sensor] = {}
         self.simulation: Any = None
@@ -261,6 +262,23 @@ class World:
         self._check_disc(disc)
         self.props.append(disc)
         return disc
+
+    def add_pillar(self, x: float, y: float, radius: float, **options: Any) -> Pillar:
+        """Stand an upright cylinder that may grow; see :class:`mjmr.pillar.Pillar` for the options.
+
+        Raises:
+            InvalidInputError: It is not within the walls, or will not be when it has grown.
+        """
+        pillar = Pillar(x=x, y=y, radius=radius, **options)
+        low, high = self.bounds[:2] + pillar.largest, self.bounds[2:] - pillar.largest
+        if not (low[0] <= x <= high[0] and low[1] <= y <= high[1]):
+            (x0, y0), (x1, y1) = self.bounds[:2], self.bounds[2:]
+            raise InvalidInputError(
+                f"a pillar of up to {pillar.largest:g} m radius at ({x:g}, {y:g}) does not fit "
+                f"between the walls, which enclose x {x0:g} to {x1:g} and y {y0:g} to {y1:g} m"
+            )
+        self.props.append(pillar)
+        return pillar
 
     def add_group(
         self, platform: "type[Platform] | Platform", poses: ArrayLike, **options: Any
@@ -402,7 +420,12 @@ class World:
         """Boxes that go to and fro by themselves, with their names in the built model."""
         return [(name, prop) for name, prop in self.named_props() if isinstance(prop, Cart)]
 
-    def named_props(self) -> Sequence[tuple[str, Box | Ball | Cart | Disc]]:
+    @property
+    def pillars(self) -> Sequence[tuple[str, Pillar]]:
+        """Upright cylinders, with their geoms' names in the built model."""
+        return [(name, prop) for name, prop in self.named_props() if isinstance(prop, Pillar)]
+
+    def named_props(self) -> Sequence[tuple[str, Box | Ball | Cart | Disc | Pillar]]:
         """Props with their names in the built model."""
         return [(f"{type(p).__name__.lower()}{i}", p) for i, p in enumerate(self.props)]
 

@@ -8,6 +8,7 @@ import numpy as np
 from mjmr.cart import Cart
 from mjmr.cart_servos import CartServos, add_cart
 from mjmr.disc import Disc, add_disc
+from mjmr.pillar import Pillar, add_pillar
 from mjmr.robots.platform import FLOOR
 
 if TYPE_CHECKING:
@@ -45,6 +46,8 @@ def build_spec(world: "World") -> mujoco.MjSpec:
             add_cart(spec, name, prop)
         elif isinstance(prop, Disc):
             add_disc(spec, name, prop, FLOOR)
+        elif isinstance(prop, Pillar):
+            add_pillar(spec, name, prop)
         else:
             _prop(spec, name, prop)
     for group in world.groups:

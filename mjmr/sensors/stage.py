@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import mujoco
 
 from mjmr.cart_servos import CartServos
+from mjmr.pillar import Pillars
 
 if TYPE_CHECKING:
     from mjmr.loop import TickedSimulation
@@ -19,6 +20,9 @@ class Stage:
     Attributes:
         model: Of the simulation, or the one compiled here.
         data: Private; where everything is in the state shown.
+        time: Of the state shown [s].
+        pillars: Whose radii at that time subclasses put where they need them: the model is not
+            theirs.
     """
 
     def __init__(self, simulation: "TickedSimulation"):
@@ -36,10 +40,13 @@ class Stage:
         self.model: mujoco.MjModel = model
         self.data: Any = mujoco.MjData(model)
         self._carts = CartServos(model, world)
+        self.pillars = Pillars(model)
+        self.time = 0.0
 
     def show(self, state: Any) -> None:
         """Put everything where it was when ``simulation.visible_state()`` returned ``state``."""
         data, model = self.data, self.model
+        self.time = state[0]
         if self._drives:
             time, poses, *parts = state
             for rows, drive in self._drives:
@@ -48,5 +55,5 @@ class Stage:
                 sensor.place(data, moved)
             self._carts.place(data, time)
         else:
-            data.qpos[:], data.mocap_pos[:], data.mocap_quat[:] = state
+            data.qpos[:], data.mocap_pos[:], data.mocap_quat[:] = state[1:]
         mujoco.mj_kinematics(model, data)

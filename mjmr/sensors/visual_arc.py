@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mjmr.errors import InvalidInputError
+from mjmr.pillar import Pillars
 from mjmr.sensors.base import Sensor
 from mjmr.sensors.mount import carrier_model, site_place
 from mjmr.sensors.range_errors import RangeErrors, fan_angles
@@ -18,18 +19,18 @@ if TYPE_CHECKING:
     from mjmr.group import Group
 
 Array = NDArray[np.float64]
-NOTHING, FIXED, ROBOT, MOVER = 0, 1, 2, 3
-KINDS = ("nothing", "fixed", "robot", "mover")
+NOTHING, FIXED, ROBOT, MOVER, PILLAR = 0, 1, 2, 3, 4
+KINDS = ("nothing", "fixed", "robot", "mover", "pillar")
 
 
 class VisualArc(Sensor):
     """A fan of rays in place of a camera's columns, on every robot of a group.
 
     Each column tells the range of the nearest surface at one height and what kind of thing it is:
-    a robot, a prop that can be moved, or what is fixed (walls, boxes). Which one of its kind is not
-    told, as by a camera that knows things by their colours. What is behind something else is
-    hidden, what is lower than the plane is not seen, and the carrier does not see itself. The fan
-    is level whatever the robot's tilt, and turns with the site it is at.
+    a robot, a prop that can be moved, a pillar, or what is fixed (walls, boxes). Which one of its
+    kind is not told, as by a camera that knows things by their colours. What is behind something
+    else is hidden, what is lower than the plane is not seen, and the carrier does not see itself.
+    The fan is level whatever the robot's tilt, and turns with the site it is at.
 
     Attributes:
         angles: Of the columns (c,) [rad] to the site's x axis, anticlockwise, increasing.
@@ -129,7 +130,7 @@ class VisualArc(Sensor):
         scene = self._simulation.rays
         if self._sites is None:
             self._sites = scene.sites(self._group.prefixes, [self.site])
-            self._kinds = _kinds(scene.model, scene.names)
+            self._kinds = kinds_of(scene.model, scene.names)
         scene.show(state)
         origins, frames = scene.frames(self._sites)
         origins[:, 2] = self.height
@@ -158,7 +159,7 @@ def _level(frames: Array) -> Array:
     return level
 
 
-def _kinds(model: Any, robots: Sequence[str]) -> Array:
+def kinds_of(model: Any, robots: Sequence[str]) -> Array:
     """Kind of every geom (ngeom + 1,); of geom -1, nothing, the last entry."""
     kinds = np.full(model.ngeom + 1, float(FIXED))
     names, known = [model.body(b).name for b in range(model.nbody)], set(robots)
@@ -168,5 +169,6 @@ def _kinds(model: Any, robots: Sequence[str]) -> Array:
             kinds[geom] = ROBOT
         elif model.body_dofnum[model.body_weldid[body]] > 0:
             kinds[geom] = MOVER
+    kinds[Pillars(model).geoms] = PILLAR
     kinds[-1] = NOTHING
     return kinds

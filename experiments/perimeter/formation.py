@@ -1,0 +1,120 @@
+"""A leader and two followers by the separation-bearing law (not in the paper)."""
+
+import contextlib
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from controllers.consensus.leader_follower import SeparationBearing
+from mjmr.geometry import rotate, wrap_angle
+from mjmr.radio import Radio
+from mjmr.robots.tamiya_txt1 import TamiyaTXT1
+from mjmr.sensors.localizer import Localizer
+from mjmr.world import World
+
+PERIOD = 0.1
+SPEED = 0.8  # m/s, of the leader
+RADIUS = 10.0  # m, of the circle and of the eight's two
+SEPARATION, BEARINGS = 2.0, np.radians([150.0, -150.0])  # of the two followers
+RAMP = 8.0  # s, in which the leader's curvature changes
+SETTLE = 30.0  # s, until which errors do not count
+AHEAD = 0.3  # m, of the followers' reference point before the axle
+
+
+def formation(condition: Mapping[str, Any], seed: int) -> dict[str, Any]:
+    """Errors of two followers that start off their places and follow a leader on a path.
+
+    Where the leader is comes from poses that all three report by radio, with noise; the leader's
+    speeds are what it was commanded, by radio.
+    """
+    rng = np.random.default_rng(np.random.SeedSequence([seed, 14]))
+    world = World.rectangle(120.0, 60.0, wall_height=0.6, floor="concrete")
+    start = np.array([-50.0 if condition["path"] == "straight" else 0.0, -10.0, 0.0])
+    places = start[:2] + SEPARATION * np.column_stack([np.cos(BEARINGS), np.sin(BEARINGS)])
+    places = places - [AHEAD, 0.0] + rng.uniform(-0.3, 0.3, (2, 2))
+    yaws = rng.uniform(-0.2, 0.2, 2)
+    poses = np.vstack([start, np.column_stack([places, yaws])])
+    trucks = world.add_group(TamiyaTXT1, poses)
+    trucks.mount(Localizer(rate=10.0, position_noise=0.005, yaw_noise=0.005), "localizer")
+    simulation, meter = _simulation(condition, world, seed)
+    radio = Radio(simulation, range=condition["d_com"])
+    law = [SeparationBearing(separation=SEPARATION, bearing=float(b), ahead=AHEAD)
+           for b in BEARINGS]  # fmt: skip
+    track: list[np.ndarray] = []
+    simulation.observe(lambda: track.append(simulation.truth.poses(trucks)))
+    duration = min(condition["duration"], 110.0 if condition["path"] == "straight" else 160.0)
+    with contextlib.closing(simulation):
+        for now in simulation.ticks(duration):
+            leads = np.array([SPEED, _turn(condition["path"], now)])
+            pose = trucks.localizer.read()
+            command = np.zeros((3, 2))
+            command[0] = leads
+            if radio.messages_sent.any() and np.isfinite(pose).all():
+                told, sent = radio.latest()
+                heard, age = (
+                    told[1:, 0],
+                    now - sent[1:, 0],
+                )  # what each follower heard of the leader
+                # where the leader has got to since, by the speeds it tells
+                heard[:, 2] += heard[:, 4] * age
+                heard[:, :2] += rotate(np.column_stack([heard[:, 3] * age, 0.0 * age]), heard[:, 2])
+                way = rotate(heard[:, :2] - pose[1:, :2], -pose[1:, 2])
+                seen = np.column_stack([way, wrap_angle(heard[:, 2] - pose[1:, 2])])
+                for k in range(2):
+                    if np.isfinite(seen[k]).all():
+                        command[k + 1] = law[k].command(seen[k : k + 1], heard[k : k + 1, 3:])[0]
+            radio.broadcast_arrays(np.column_stack([pose, np.tile(leads, (3, 1))]))
+            trucks.drive(command)
+    return {"time_s": duration, **_errors(np.stack(track)), "contacts": _contacts(meter)}
+
+
+def _turn(path: str, now: float) -> float:
+    """Turn rate of the leader [rad/s]: after 10 s straight."""
+    if path == "straight" or now < 10.0:
+        return 0.0
+    lap = 2.0 * np.pi * RADIUS / SPEED
+    rise = min(1.0, (now - 10.0) / RAMP)
+    if path == "circle":
+        return SPEED / RADIUS * rise
+    # an eight has no corners: from one circle to the other the curvature goes through nought
+    since = (now - 10.0) % (2.0 * lap)
+    way = min(since, abs(since - lap), 2.0 * lap - since) / (RAMP / 2.0)
+    return SPEED / RADIUS * min(rise, way, 1.0) * (1.0 if since < lap else -1.0)
+
+
+def _errors(track: np.ndarray) -> dict[str, float]:
+    """Of separation [m] and bearing [deg] over time (k, 3, 3), after they have settled."""
+    late = track[round(SETTLE / PERIOD) :]
+    leader, followers = late[:, :1], late[:, 1:]
+    heading = np.stack([np.cos(followers[..., 2]), np.sin(followers[..., 2])], axis=-1)
+    way = followers[..., :2] + AHEAD * heading - leader[..., :2]
+    apart = np.hypot(way[..., 0], way[..., 1])
+    bearing = wrap_angle(np.arctan2(way[..., 1], way[..., 0]) - leader[..., 2] - BEARINGS)
+    # where each should have been
+    wanted = leader[..., 2] + BEARINGS
+    place = SEPARATION * np.stack([np.cos(wanted), np.sin(wanted)], axis=-1)
+    off = np.hypot(*(way - place).transpose(2, 0, 1))
+    return {
+        "separation_rms_m": float(np.sqrt(((apart - SEPARATION) ** 2).mean())),
+        "bearing_rms_deg": float(np.degrees(np.sqrt((bearing**2).mean()))),
+        "place_rms_m": float(np.sqrt((off**2).mean())),
+        "place_worst_m": float(off.max()),
+    }
+
+
+def _simulation(condition: Mapping[str, Any], world: World, seed: int) -> tuple[Any, Any]:
+    options = {"seed": seed, "control_period": PERIOD}
+    if condition["mode"] == "unicycle":
+        from mjmr.kinematics import KinematicSimulation
+
+        return KinematicSimulation(world, **options), None
+    from mjmr.metrics import ContactMeter
+    from mjmr.simulation import Simulation
+
+    simulation = Simulation(world, dt_max=condition["dt_ms"] / 1000.0, **options)
+    return simulation, ContactMeter(simulation)
+
+
+def _contacts(meter: Any) -> int:
+    return -1 if meter is None else int(meter.episodes)

@@ -1,0 +1,73 @@
+"""How much each size runs: the same experiments, with other numbers."""
+
+from mjmr.conditions import Grid
+from mjmr.study import Size
+
+JOIN = {"task": "join", "start": "scattered"}
+STAY = {"task": "stay", "start": "bunch", "duration": 600.0}
+GROWTH = 0.0125  # m/s, the paper's
+FACTORS = (0.0, 0.8, 1.2)  # of the even chord; 0: 1 - .05 / (n - 1)
+LATER = 660.0  # s: 60 s, then 600 s to be even again
+PATHS = ("straight", "circle", "eight")
+SWEEP = (0.6, 0.7, 0.8, 0.9, 0.95, 1.0, 1.05, 1.1, 1.2, 1.3, 1.4)
+RANGES = (0.0, 10.0, 25.0, 150.0)  # m, of the radio
+
+
+def grids(join: int, few: int, sweep: int) -> tuple[Grid, ...]:
+    """Conditions of a size that decides claims.
+
+    Args:
+        join: Seeds of the trials in which a team finds a spill.
+        few: Seeds of everything else.
+        sweep: Seeds of the sweeps on unicycle bodies.
+    """
+    return (
+        Grid(**JOIN, seeds=join),
+        Grid(**JOIN, growth=GROWTH, seeds=few),
+        Grid(**JOIN, radius=20.0, seeds=few),
+        Grid(**JOIN, gain="stiff", seeds=few),
+        Grid(**STAY, factor=FACTORS, seeds=few),
+        Grid(**STAY, spacing="literal", seeds=few),
+        Grid(**STAY, growth=GROWTH, seeds=few),
+        Grid(**STAY, estimated=True, seeds=few),
+        Grid(**STAY, estimated=True, growth=GROWTH, seeds=few),
+        Grid(
+            task="stay", start="even", failure=("removed", "added"), estimated=True,
+            robots=5, duration=LATER, seeds=few,
+        ),
+        Grid(**JOIN, failure=("camera", "radio", "lie"), seeds=few),
+        Grid(task="stay", start="bunch", sensing="camera", duration=120.0, seeds=few),
+        Grid(task="stay", start="bunch", sensing="both", duration=60.0, seeds=1),
+        Grid(task="stay", start="bunch", wrong=0.2, duration=200.0, seeds=few),
+        Grid(task="stay", start="bunch", radius=15.0, growth=-GROWTH, duration=300.0, seeds=few),
+        Grid(**JOIN, edge="lobes", seeds=few),
+        Grid(task="formation", path=PATHS, seeds=few),
+        Grid(task="envelope", seeds=few),
+        Grid(**JOIN, mode="unicycle", d_com=RANGES, seeds=sweep),
+    )  # fmt: skip
+
+
+QUICK = Size(
+    "quick",
+    grids=(
+        Grid(task="stay", start="bunch", mode="unicycle", duration=30.0, seeds=1),
+        Grid(task="stay", start="bunch", duration=30.0, seeds=1),
+        Grid(task="formation", path="circle", duration=45.0, seeds=1),
+        Grid(task="envelope", seeds=1),
+    ),
+    default_seeds=1,
+    expected_minutes=0.3,
+    note="half a minute of tracking, a circle of three, one truck's limits; decides few claims",
+)
+STANDARD = Size("standard", grids=grids(20, 3, 8), default_seeds=3, expected_minutes=15.0)
+FULL = Size(
+    "full",
+    grids=(
+        *grids(60, 10, 20),
+        Grid(**STAY, mode="unicycle", factor=SWEEP, seeds=5),
+        Grid(**STAY, mode="unicycle", robots=(2, 3, 4, 6, 7, 8), seeds=5),
+    ),
+    default_seeds=10,
+    expected_minutes=90.0,
+    note="with sweeps of d_des and of the number of robots on unicycle bodies",
+)
