@@ -78,9 +78,6 @@ class Renderer:
         self._option = mujoco.MjvOption()
         self._option.geomgroup[:] = (1, 1, 0, 0, 0, 0)
         self._option.sitegroup[:] = 0
-        self._groups = model.geom_group.copy()
-        # planes have no bounding sphere: they may be seen from everywhere
-        self._radii = np.where(model.geom_rbound > 0, model.geom_rbound, np.inf)
 
     def picture(self, data: mujoco.MjData, camera: Any) -> NDArray[np.uint8]:
         """RGB picture, shape (height, width, 3), a new array.
@@ -116,8 +113,12 @@ class Renderer:
 
     def _aim(self, data: mujoco.MjData, camera: Any) -> None:
         _free_forgotten()
+        groups = self.model.geom_group.copy()
         self._leave_out(data, camera)
-        self._renderer.update_scene(data, camera, scene_option=self._option)
+        try:
+            self._renderer.update_scene(data, camera, scene_option=self._option)
+        finally:
+            self.model.geom_group[:] = groups  # the model is everybody's
         flags = self._renderer.scene.flags
         flags[mujoco.mjtRndFlag.mjRND_SHADOW] = self._fine
         flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = 0
@@ -132,7 +133,6 @@ class Renderer:
         """
         model = self.model
         if self._fine or not isinstance(camera, (int, np.integer, str)):
-            model.geom_group[:] = self._groups
             return
         index = model.camera(camera).id
         turn = data.cam_xmat[index].reshape(3, 3)
@@ -140,11 +140,13 @@ class Renderer:
         up = np.radians(model.cam_fovy[index]) / 2.0
         aside = np.arctan(np.tan(up) * self.width / self.height)
         # MuJoCo's cameras look along -z; a little more than what is needed
-        reach = 1.01 * self._radii + 0.01
+        # planes have no bounding sphere: they may be seen from everywhere
+        radii = np.where(model.geom_rbound > 0, model.geom_rbound, np.inf)
+        reach = 1.01 * radii + 0.01
         seen = z < reach
         for across, angle in ((x, aside), (y, up)):
             seen &= np.abs(across) * np.cos(angle) + z * np.sin(angle) < reach
-        model.geom_group[:] = np.where(seen, self._groups, _HIDDEN)
+        model.geom_group[~seen] = _HIDDEN
 
     def view(self) -> Pinhole:
         """Camera of the last picture, in the world frame."""

@@ -63,12 +63,14 @@ def test_what_pictures_leave_out_is_not_in_them(recording, sides):
     mujoco.mj_kinematics(footage.model, data)
     mujoco.mj_camlight(footage.model, data)
     with Renderer(footage.model, 160, 120, sides=sides) as renderer:
+        groups = renderer.model.geom_group.copy()
         for k in range(3):
             eye = f"tamiya_txt1{k}/eye"
             few = renderer.picture(data, eye)
+            # the model is everybody's: another camera, or a film, is to see all of it
+            assert np.array_equal(renderer.model.geom_group, groups)
             counted = renderer._renderer.scene.ngeom
             renderer._leave_out, kept = lambda *_: None, renderer._leave_out
-            renderer.model.geom_group[:] = renderer._groups
             every = renderer.picture(data, eye)
             assert counted < renderer._renderer.scene.ngeom - 50
             renderer._leave_out = kept
