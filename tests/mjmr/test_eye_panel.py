@@ -54,7 +54,7 @@ def test_an_eye_shows_the_robot_s_view_and_what_is_made_of_it(recording):
 
 
 @pytest.mark.parametrize("sides", [20, 90])
-def test_what_pictures_leave_out_is_not_in_them(recording, sides):
+def test_what_pictures_leave_out_is_not_in_them(recording, sides, monkeypatch):
     footage = recording.footage()
     import mujoco
 
@@ -70,8 +70,8 @@ def test_what_pictures_leave_out_is_not_in_them(recording, sides):
             # the model is everybody's: another camera, or a film, is to see all of it
             assert np.array_equal(renderer.model.geom_group, groups)
             counted = renderer._renderer.scene.ngeom
-            renderer._leave_out, kept = lambda *_: None, renderer._leave_out
-            every = renderer.picture(data, eye)
+            with monkeypatch.context() as all_of_it:
+                all_of_it.setattr(renderer, "_leave_out", lambda *_: None)
+                every = renderer.picture(data, eye)
             assert counted < renderer._renderer.scene.ngeom - 50
-            renderer._leave_out = kept
             assert np.array_equal(few, every)
