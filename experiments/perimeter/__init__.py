@@ -4,6 +4,8 @@ The declaration; cheap to import. The hall is in worlds.py, the paper's loop rea
 trial.py, what is claimed and what decides it is in claims.py.
 """
 
+from pathlib import Path
+
 from experiments.perimeter.sizes import FULL, QUICK, STANDARD
 from mjmr.conditions import Parameter
 from mjmr.study import Study
@@ -89,4 +91,5 @@ study = Study(
     world=f"{_HERE}.worlds:world",
     bench=f"{_HERE}.bench:bench",
     prepare=f"{_HERE}.trial:prepare",
+    verdicts=Path(__file__).with_name("verdicts.json"),
 )
