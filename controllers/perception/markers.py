@@ -41,15 +41,21 @@ class MarkerFinder:
     its height: the height of a rectangle with the same second moment, which counts all pixels and
     so resolves parts of one. Where a jamb hides a part of the width, the height remains; the
     bearing is that of the part seen.
+
+    One camera that has no neighbour sees a marker at its picture's side in part only, for long:
+    ``complete`` places such a one by the side of it that is in the picture.
     """
 
-    def __init__(self, marker: Marker, cameras: Sequence[Pinhole]):
+    def __init__(self, marker: Marker, cameras: Sequence[Pinhole], *, complete: bool = False):
         """Set what is looked for and with what.
 
         Args:
             marker: What all robots carry.
             cameras: In the robot's frame, their axes level.
+            complete: A spot that the left or the right side of its picture cuts off is taken for a
+                part of a cylinder whose width its height tells; else the bearing is the part's.
         """
+        self._complete = complete
         self._marker, self._cameras = marker, list(cameras)
         self._blobs = BlobFinder(marker.colours)
 
@@ -81,20 +87,42 @@ class MarkerFinder:
         depth = camera.focal * self._marker.length / spot.height
         across = depth * (spot.x - camera.centre[0]) / camera.focal
         # its near side is what shows: the axis is a radius further
-        stretch = 1.0 + self._marker.radius / math.hypot(depth, across)
-        local = np.array([across * stretch, 0.0, depth * stretch])
+        near = math.hypot(depth, across)
+        if self._complete and spot.edge is not None:
+            turn = self._axis(spot.edge, spot.side, near, camera)
+            away = near + self._marker.radius
+            local = away * np.array([math.sin(turn), 0.0, math.cos(turn)])
+        else:
+            local = np.array([across, 0.0, depth]) * (1.0 + self._marker.radius / near)
         x, y = (camera.position + camera.rotation @ local)[:2]
         return math.hypot(x, y), math.atan2(y, x)
+
+    def _axis(self, edge: float, side: float, near: float, camera: Pinhole) -> float:
+        """Angle to the right [rad] of a cylinder's axis, if ``edge`` [px] is its ``side``."""
+        tangent = math.atan((edge - camera.centre[0]) / camera.focal)
+        radius = self._marker.radius
+        return tangent - side * math.asin(radius / (near + radius))
 
 
 @dataclass(frozen=True)
 class _Spot:
-    """A spot of one colour: middle, height of its rectangle, area [px], cut by an edge or not."""
+    """A spot of one colour.
+
+    Attributes:
+        x: Its middle [px].
+        height: Of a rectangle with the same second moment [px].
+        area: [px].
+        cut: Whether an edge of the picture cuts it.
+        edge: If one side of the picture cuts it, where its other side is [px]; else None.
+        side: Which side of the spot that is: 1 the right one, -1 the left one.
+    """
 
     x: float
     height: float
     area: float
     cut: bool
+    edge: float | None
+    side: float
 
 
 def _largest(mask: NDArray[np.uint8]) -> _Spot | None:
@@ -109,7 +137,11 @@ def _largest(mask: NDArray[np.uint8]) -> _Spot | None:
     moments = cv2.moments(own, binaryImage=True)
     # n pixels in a column have a variance of (n^2 - 1) / 12
     spread = math.sqrt(12.0 * moments["mu02"] / moments["m00"] + 1.0)
-    edge = left == 0 or left + width == mask.shape[1] or top == 0
-    cut = bool(edge or top + height == mask.shape[0])
+    sides = left == 0, left + width == mask.shape[1]
+    cut = bool(any(sides) or top == 0 or top + height == mask.shape[0])
     middle = moments["m10"] / moments["m00"] + left + 0.5
-    return _Spot(x=middle, height=spread, area=float(area), cut=cut)
+    edge = None
+    if sides[0] != sides[1]:
+        edge = float(left + width if sides[0] else left)
+    side = 1.0 if sides[0] else -1.0
+    return _Spot(x=middle, height=spread, area=float(area), cut=cut, edge=edge, side=side)

@@ -89,7 +89,7 @@ class Eyes:
                 look_at=ahead,
             )
         )  # fmt: skip
-        self._finder = MarkerFinder(_MARKER, [self._camera.calibration])
+        self._finder = MarkerFinder(_MARKER, [self._camera.calibration], complete=True)
         self._n = robots.n
 
     def read(self) -> Array:

@@ -1,7 +1,7 @@
 """What is claimed of consensus: the theory here, robots in :mod:`.claims_physical`.
 
-The paper reports one figure without numbers. Bounds are ours, those of the reproduction's
-specification; so are the reference values, which were computed from the restored system.
+The paper reports one figure without numbers. Bounds are ours; reference values were computed from
+the restored linear system.
 """
 
 from typing import Any

@@ -10,7 +10,7 @@ from mjmr.film_options import FilmOptions
 from mjmr.recording import Recording
 from mjmr.study import Study
 
-SECONDS = 45.0
+SECONDS = 40.0
 _SPEED = 8.0  # times real time, unless asked otherwise
 SHOWN: tuple[tuple[str, dict[str, Any]], ...] = (
     ("graphs given, a new leader every 5 s", {}),

@@ -12,7 +12,10 @@ from mjmr.plot import edge_rows, figure, interval_line
 from mjmr.table import Table
 
 Array = NDArray[np.float64]
-_SHOWN = ("schedule", "dwell", "noise", "loss", "delay", "fault", "sight", "cone_deg", "scan")
+_SHOWN = (
+    "schedule", "dwell", "noise", "loss", "delay", "fault", "sight", "cone_deg", "scan", "heading",
+)  # fmt: skip
+_SHORT = {"sight": "", "cone_deg": "", "schedule": "", "fault": "", "heading": ""}
 
 
 def plots(table: Table, folder: Path) -> list[Path]:
@@ -26,7 +29,9 @@ def plots(table: Table, folder: Path) -> list[Path]:
             if rows.finished:
                 made += [_edges(rows, folder / f"graph-{name}.svg"),
                          _hands(rows, folder / f"hands-{name}.svg")]  # fmt: skip
-        made.append(_spread(bodies, folder / "spread.svg"))
+        for rows, file in ((bodies.where(sight="given"), "spread"), (seen, "spread-seen")):
+            if rows.finished:
+                made.append(_spread(rows, folder / f"{file}.svg"))
     crowds = table.where(experiment="graph")
     if crowds.finished:
         made.append(_growth(crowds, folder / "time-to-agreement.svg"))
@@ -41,7 +46,9 @@ def series(metrics: Any) -> tuple[Array, NDArray[np.bool_]]:
 
 
 def _first(rows: Table) -> Any:
-    return next(row for row in rows.rows if row.status == "ok")
+    """The first run, of those in which robots that see nobody look round if there are any."""
+    done = [row for row in rows.rows if row.status == "ok"]
+    return next((row for row in done if row.condition["scan"]), done[0])
 
 
 def _told(row: Any) -> str:
@@ -72,7 +79,7 @@ def _hands(rows: Table, path: Path) -> Path:
 
 
 def _spread(rows: Table, path: Path) -> Path:
-    title = "Spread of the hands less offsets, first seed of each condition"
+    title = "Spread of the hands less offsets, first seed of each condition; 0.5 mm: less"
     with figure(path, title, "time / s", "spread / m") as axes:
         shown = [c for c in rows.conditions if c["side"] == 2.0]
         for k, condition in enumerate(shown):
@@ -86,22 +93,24 @@ def _spread(rows: Table, path: Path) -> Path:
             axes.plot(np.maximum(apart, 5e-4), color=f"C{k % 10}", linewidth=1.2,
                       linestyle=("-", "--", ":")[k // 10 % 3], label=_label(condition))  # fmt: skip
         axes.set_yscale("log")
-        axes.set_xlim(right=80 if len(shown) < 6 else 130)
-        axes.legend(fontsize=5.5, loc="upper right")
+        axes.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5))
     return path
 
 
 def _label(condition: Any) -> str:
     plain = {"schedule": "alternate", "dwell": 5.0, "noise": 0.0, "loss": 0.0, "delay": 0.0,
-             "fault": "none", "sight": "given", "cone_deg": 90.0, "scan": False}  # fmt: skip
+             "fault": "none", "sight": "given", "cone_deg": 0.0, "scan": False,
+             "heading": "random"}  # fmt: skip
+    if condition["sight"] == "given":
+        plain["cone_deg"] = condition["cone_deg"]
     told = [
-        f"{name}={format_value(condition[name])}"
+        f"{_SHORT.get(name, name + '=')}{format_value(condition[name])}"
         for name in _SHOWN
         if condition[name] != plain[name]
     ]
     if not condition["calibrated"]:
         told.append("uncalibrated")
-    return " ".join(told) or "dwell=5"
+    return " ".join(told).replace("scan=true", "scan") or "dwell=5"
 
 
 def _growth(rows: Table, path: Path) -> Path:
