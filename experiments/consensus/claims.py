@@ -208,7 +208,7 @@ def _theory() -> list[Claim]:
             bound=Bound("<=", 0.0),
             sizes=EVERY,
             needs=lemma,
-            evaluate=lambda table: _disagreements(table),
+            evaluate=_disagreements,
         ),
         Claim(
             id="lemma-2.2",
