@@ -82,8 +82,11 @@ def _barrier() -> list[Claim]:
         claim("barrier-distance", "the same: least distance of two middles; 0.702 m is two "
                "radii", Bound(">=", 0.70), {**CROSSED, "avoid": "barrier"},
                least("least_distance_m"), "m", text),
-        claim("barrier-feasible", "ticks whose program had no solution, all runs, sum",
-               Bound("<=", 0.0), {**TIGHT, "avoid": "barrier"}, total("infeasible"), "", text),
+        claim("barrier-feasible", "ticks whose program had no solution, side 1.2 m, places "
+               "outward, sum", Bound("<=", 0.0), {**TIGHT, "avoid": "barrier"},
+               total("infeasible"), "", text),
+        claim("barrier-feasible-crossed", "written later: the same, places crossed",
+               Bound("<=", 0.0), {**CROSSED, "avoid": "barrier"}, total("infeasible"), "", text),
         claim("barrier-spread", "side 1.2 m, places outward, barrier: spread at 80 s, largest",
                Bound("<=", 0.02), {**TIGHT, "places": "outward", "avoid": "barrier"},
                largest("spread_m"), "m", text),

@@ -74,7 +74,9 @@ class Team:
         poses[:, :2] -= HAND * np.column_stack([np.cos(heading), np.sin(heading)])
         world = hall(bounds)
         calibrated = condition["calibrated"]
-        self.robots = add_team(world, poses, calibrated=calibrated, masts=not self.many)
+        self.robots = add_team(
+            world, poses, calibrated=calibrated, masts=not self.many, virtual=condition["virtual"]
+        )
         cone = math.radians(condition["cone_deg"])
         self.eyes: Any = None
         self.cameras: Any = Eyes(self.robots, cone) if cameras else None

@@ -32,6 +32,10 @@ def refuse_unfit(condition: Mapping[str, Any]) -> None:
             f"{', '.join(told)} are of what robots tell each other, with sight=given; nobody tells "
             f"anything with sight={sight}"
         )
+    if condition["experiment"] != "graph" and condition["side"] == 0 and not condition["virtual"]:
+        raise InvalidInputError(
+            "bodies cannot stand on one point: side=0 needs virtual=true; got virtual=false"
+        )
     if condition["scan"] and condition["avoid"] == "barrier":
         raise InvalidInputError(
             "scan=true turns robots past the barrier, whose hands would move unfiltered; got "

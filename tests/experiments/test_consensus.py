@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from controllers.consensus import CanonicalModel, check_structure, rooted
-from experiments.consensus import study
+from experiments.consensus import quotes, study
 from experiments.consensus.claims import claims
 from experiments.consensus.graphs import random_admissible, team_graph, three
 from experiments.consensus.linear import START, Runner, degrees_of, reference
@@ -17,7 +17,9 @@ from experiments.consensus.physical import Team
 from experiments.consensus.plots import series
 from experiments.consensus.refusals import refuse_unfit
 from experiments.consensus.trial import trial, world
+from mjmr.claims import judge
 from mjmr.errors import InvalidInputError, TruthError
+from mjmr.table import Row, Table
 
 SHORT = {"mode": "physical", "duration": 4.0}
 
@@ -31,6 +33,40 @@ def test_claims_are_told_apart_and_name_parameters_there_are():
     assert len({c.id for c in every}) == len(every)
     names = {p.name for p in study.parameters}
     assert all(set(c.needs) <= names for c in every)
+
+
+def test_texts_are_quotes_or_say_that_they_are_not():
+    quoted = {v for k, v in vars(quotes).items() if k.isupper()}
+    for claim in claims():
+        assert claim.text in quoted or claim.text.startswith((quotes.ABSENT, "beyond the paper: "))
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "good", "bad"),
+    [
+        ("body-spread", {}, {"spread_m": 0.01}, {"spread_m": 0.03}),
+        ("body-spread", {}, {"spread_m": 0.01}, {"spread_m": None}),
+        ("body-error", {}, {"error_m": 0.01}, {"error_m": 0.06}),
+        ("body-contacts-all", {"loss": 0.5}, {"contacts": 0}, {"contacts": 1}),
+        ("body-distance-all", {"schedule": "case-i"}, {"least_distance_m": 2.0},
+         {"least_distance_m": 0.9}),
+        ("literal-meets", {"side": 0.0, "virtual": True}, {"spread_m": 0.01}, {"spread_m": 0.2}),
+        ("crowd-agrees", {"experiment": "graph", "robots": 100}, {"agree_s": 31.0},
+         {"agree_s": None}),
+        ("stochastic-rows-robots", {"mode": "linear"}, {"row_error": 1e-15}, {"row_error": 1e-8}),
+        ("stochastic-entries-robots", {"mode": "linear"}, {"least": 0.0}, {"least": -1e-8}),
+    ],
+)  # fmt: skip
+def test_one_bad_run_fails_a_claim(name, given, good, bad):
+    claim = next(c for c in claims() if c.id == name)
+    condition = study.condition(**{"mode": "physical", **given})
+
+    def verdict(*metrics: dict[str, Any]) -> str:
+        rows = [Row(condition, seed, "ok", m) for seed, m in enumerate(metrics)]
+        return judge(claim, Table(rows, study.parameters), "standard").verdict
+
+    assert verdict(good, good, good) == "holds"
+    assert verdict(good, bad, good) == "fails"
 
 
 @pytest.mark.parametrize("size", ["quick", "standard", "full"])
@@ -82,6 +118,7 @@ def test_degrees_below_one_or_of_the_wrong_number_are_refused():
         ({"weight_y": 0.5}, "weight_y=0.5"),
         ({"sight": "rays", "loss": 0.5, "delay": 0.1}, "loss, delay are of what.*sight=rays"),
         ({"experiment": "agreement", "noise": 0.05}, "noise are of what.*sight=rays"),
+        ({"side": 0.0}, "side=0 needs virtual=true"),
         ({"sight": "rays", "scan": True, "avoid": "barrier"}, "scan=true.*avoid=none is allowed"),
     ],
 )
@@ -187,9 +224,24 @@ def test_a_dead_robot_stands_and_a_hundredfold_team_is_built_without_overlap():
     team.run(1.0)
     np.testing.assert_allclose(team.log.output[2], before, atol=1e-3)
     crowd = Team(study.condition(**SHORT, experiment="graph", robots=30, graph="complete"), 1000)
+    apart = crowd.log.spread_now
     crowd.run(2.0)
     assert crowd.log.meter.episodes == 0
-    assert crowd.log.spread_now < 1.3
+    assert crowd.log.spread_now < 0.6 * apart
+
+
+def test_virtual_robots_pass_through_each_other_and_are_carried_by_the_floor():
+    """Robots 1 and 2 have to pass each other: bodies jam, virtual ones do not."""
+    given = {"mode": "physical", "side": 1.2, "places": "crossed", "duration": 40.0}
+    bodies, virtual = run(**given), run(**given, virtual=True)
+    assert bodies["contacts"] > 0
+    assert virtual["contacts"] == 0
+    assert virtual["least_distance_m"] < 0.5 < bodies["least_distance_m"]
+    assert virtual["spread_m"] < 0.2 < bodies["spread_m"]
+    team = Team(study.condition(mode="physical", side=0.0, virtual=True), 1000)
+    team.run(1.0)
+    base = team.simulation.data.body("rover0/base")
+    assert abs(base.xpos[2]) < 0.01
 
 
 def test_the_world_can_be_written_as_mjcf():
