@@ -5,13 +5,17 @@ feedback linearization turns it into changes of forward speed and turn rate, whi
 loop follows. The speeds that are changed are the set points the drives have reached.
 """
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
 from controllers.consensus.hand import command_of_velocity, command_rates, hand_velocity
 from controllers.consensus.relative import acceleration
-from controllers.safety import BarrierFilter
 from mjmr.errors import InvalidInputError
+
+if TYPE_CHECKING:
+    from controllers.safety import BarrierFilter
 
 Array = NDArray[np.float64]
 
@@ -25,7 +29,7 @@ class HandTeam:
         barrier: Filter of the hands' velocities, or None.
     """
 
-    def __init__(self, length: float, period: float, barrier: BarrierFilter | None = None):
+    def __init__(self, length: float, period: float, barrier: "BarrierFilter | None" = None):
         """Args: see the class.
 
         Raises:

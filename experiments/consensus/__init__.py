@@ -62,7 +62,14 @@ study = Study(
         Parameter("degrees", "relative degree of all, or of each: '1 2 3'", "2"),
         Parameter("degree", "of Example 4.1", 2, least=1),
         Parameter("anyway", "run graphs that never meet the structure condition", False),
-        Parameter("side", "of the robots' triangle", 2.0, unit="m", least=0.0),
+        Parameter(
+            "side",
+            "of the robots' triangle; 0, the paper's one point, needs robots that are virtual",
+            2.0,
+            unit="m",
+            least=0.0,
+        ),
+        Parameter("virtual", "robots pass through each other", False),
         Parameter(
             "places",
             "crossed: robots 1 and 2 have to pass each other",

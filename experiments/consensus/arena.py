@@ -40,8 +40,18 @@ def hall(bounds: ArrayLike) -> World:
     return World(bounds=bounds, wall_height=0.5, floor="concrete")
 
 
-def add_team(world: World, poses: Array, *, calibrated: bool, masts: bool) -> "Group":
-    """Robots at poses (n, 3), with masts if there are three that are to see each other."""
+def add_team(
+    world: World, poses: Array, *, calibrated: bool, masts: bool, virtual: bool = False
+) -> "Group":
+    """Robots at poses (n, 3).
+
+    Args:
+        world: To put them into.
+        poses: (n, 3).
+        calibrated: Whether servos reckon with the scrub of the tyres.
+        masts: Whether they carry them: three that are to see each other.
+        virtual: Whether they pass through each other; floor and walls carry and stop them still.
+    """
     platform = FourWheeler(acceleration=2.0, turn_acceleration=10.0, calibrated=calibrated)
     robots = world.add_group(platform, poses, name="rover")
     if masts:
@@ -51,7 +61,16 @@ def add_team(world: World, poses: Array, *, calibrated: bool, masts: bool) -> "G
                 _mast(spec.body(f"{prefix}base"), colour)
 
         world.edit(build)
+    if virtual:
+        world.edit(lambda spec: _pass_through(spec, robots.prefixes))
     return robots
+
+
+def _pass_through(spec: "mujoco.MjSpec", prefixes: Any) -> None:
+    for prefix in prefixes:
+        for geom in spec.body(f"{prefix}base").find_all("geom"):
+            # what is touched by others; what it touches itself, contype, is floor and walls then
+            geom.conaffinity = 0
 
 
 def _mast(base: Any, colour: tuple[float, ...]) -> None:

@@ -1,5 +1,6 @@
 """Who hears whom, and how much it weighs: the paper's cases, negatives, and graphs of n robots."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import networkx as nx
@@ -56,6 +57,14 @@ class Schedule:
     def at(self, time: float) -> int:
         """Number of the instant in force at ``time`` [s]."""
         return min(int(time / self.dwell + 1e-9), len(self.graphs) - 1)
+
+    def pieces(self, begin: float, end: float) -> Iterator[tuple[int, float]]:
+        """A span of time [s] cut where the graph changes: (instant in force, duration [s])."""
+        while end - begin > 1e-9:
+            k = self.at(begin)
+            until = end if k + 1 == len(self.graphs) else min(end, (k + 1) * self.dwell)
+            yield k, until - begin
+            begin = until
 
     def structure(self) -> StructureReport:
         """Whether what goes on for ever, the last third, meets Assumption 4.2."""

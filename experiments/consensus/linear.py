@@ -47,6 +47,14 @@ class Runner:
             return np.stack(columns, axis=1)
         return self._transition(gains, duration) @ state
 
+    def follow(
+        self, state: Array, schedule: Schedule, gains: list[Array], begin: float, end: float
+    ) -> Array:
+        """State at ``end`` after the gains of each of a schedule's instants since ``begin`` [s]."""
+        for k, duration in schedule.pieces(begin, end):
+            state = self.advance(state, gains[k], duration)
+        return state
+
     def _transition(self, gains: Array, duration: float) -> Array:
         key = gains.tobytes(), round(duration, 9)
         if key not in self._kept:
@@ -78,11 +86,10 @@ def run(
     """
     state = runner.model.start(start, velocity)
     gains = schedule.gains if channel_gains is None else channel_gains
-    step = min(_STEP, schedule.dwell)
-    since = np.nan
-    times = step * np.arange(1, round(duration / step) + 1)
-    for time in times:
-        state = runner.advance(state, gains[schedule.at(time - step)], step)
+    since, before = np.nan, 0.0
+    times = _STEP * np.arange(1, int(np.ceil(duration / _STEP - 1e-9)) + 1)
+    for time in np.minimum(times, duration):
+        state, before = runner.follow(state, schedule, gains, before, time), time
         apart = spread(state[runner.model.outputs])
         if apart > near:
             since = np.nan
@@ -222,8 +229,7 @@ def _mixed_channels(condition: Mapping[str, Any]) -> Metrics:
     ]
     runner = Runner([2] * 6)
     state = runner.model.start(START.reshape(6, 1))
-    for k in range(round(condition["duration"] / _STEP)):
-        state = runner.advance(state, wide[schedule.at(k * _STEP)], _STEP)
+    state = runner.follow(state, schedule, wide, 0.0, condition["duration"])
     y = state[runner.model.outputs, 0].reshape(3, 2)
     middle = y.mean(axis=0)
     return {

@@ -11,7 +11,9 @@ from controllers.consensus import (
     HandTeam,
     Scan,
     hand_position,
+    hand_velocity,
     neighbour_gains,
+    offset_relative,
     reducible,
     rooted,
     spread,
@@ -20,6 +22,7 @@ from controllers.safety import BarrierConfig, BarrierFilter
 from experiments.consensus.arena import HAND, Eyes, add_team, hall, mount_rays
 from experiments.consensus.graphs import Schedule, refuse_hopeless, static, three
 from experiments.consensus.linear import START, reference
+from experiments.consensus.refusals import refuse_unfit
 from mjmr.faults import Fault
 from mjmr.geometry import rotate
 from mjmr.metrics import ContactMeter
@@ -54,8 +57,10 @@ class Team:
             cameras: Whether there are cameras besides rays, :attr:`cameras`, which nobody uses.
 
         Raises:
-            InvalidInputError: Graphs that never meet Assumption 4.2, and nobody asked for them.
+            InvalidInputError: Parameters that do not go together, or graphs that never meet
+                Assumption 4.2 and nobody asked for them.
         """
+        refuse_unfit(condition)
         self.condition = condition
         streams = Streams(seed)
         self.many = condition["experiment"] == "graph"
@@ -69,7 +74,9 @@ class Team:
         poses[:, :2] -= HAND * np.column_stack([np.cos(heading), np.sin(heading)])
         world = hall(bounds)
         calibrated = condition["calibrated"]
-        self.robots = add_team(world, poses, calibrated=calibrated, masts=not self.many)
+        self.robots = add_team(
+            world, poses, calibrated=calibrated, masts=not self.many, virtual=condition["virtual"]
+        )
         cone = math.radians(condition["cone_deg"])
         self.eyes: Any = None
         self.cameras: Any = Eyes(self.robots, cone) if cameras else None
@@ -133,9 +140,7 @@ class Team:
 
     def _by_sight(self, time: float) -> tuple[Array, NDArray[np.bool_]]:
         yaw = self.robots.compass.read()
-        relative = self.sight.step(
-            time, self.eyes, yaw, self.robots.executed, self.offsets, 1 / RATE
-        )
+        relative = self.sight.step(self.eyes, yaw, self.robots.executed, self.offsets, 1 / RATE)
         hands = None
         if self.barrier is not None:
             hands = hand_position(self.robots.localizer.read(), HAND)
@@ -212,12 +217,8 @@ class Sight:
         self._at = -math.inf
         self._relative = np.full((n, n, 2), np.nan)
 
-    def step(
-        self, time: float, eyes: Any, yaw: Array, executed: Array, offsets: Array, period: float
-    ) -> Array:
+    def step(self, eyes: Any, yaw: Array, executed: Array, offsets: Array, period: float) -> Array:
         """Relative outputs (n, n, 2) [m], world axes as the compass has them."""
-        from controllers.consensus import hand_velocity, offset_relative
-
         # those seen are taken to stand still until the next look
         self._relative -= (hand_velocity(yaw, executed, HAND) * period)[:, None]
         if eyes.sampled_at > self._at:
@@ -241,7 +242,7 @@ class Log:
     """What really happens: observers' eyes alone.
 
     Attributes:
-        spread_now: Of the true outputs [m].
+        output: True outputs, hand points less offsets (n, 2) [m].
         times: Of what is kept [s].
         outputs: True outputs, hand points less offsets, at these (k, n, 2) [m].
         heard: Who heard whom at these (k, n, n).
@@ -250,7 +251,8 @@ class Log:
     def __init__(self, team: Team):
         """Watch a team."""
         self._team = team
-        self.spread_now = math.inf
+        self.output = team.start
+        self._pairs = np.triu_indices(team.n, 1)
         self.times: list[float] = []
         self.outputs: list[Array] = []
         self.heard: list[NDArray[np.bool_]] = []
@@ -262,23 +264,30 @@ class Log:
         self._next = 0.0
         team.simulation.observe(self._look)
 
+    @property
+    def spread_now(self) -> float:
+        """Of the true outputs [m]."""
+        return spread(self.output)
+
+    def _near(self) -> bool:
+        # no spread is below the outputs' extent along x or y, which takes n steps and not n^2
+        return bool(np.ptp(self.output, axis=0).max() <= _NEAR) and self.spread_now <= _NEAR
+
     def _look(self) -> None:
         team = self._team
         truth, time = team.simulation.truth, team.simulation.time
         pose, twist = truth.poses(team.robots), truth.twists(team.robots)
         self.output = hand_position(pose, HAND) - team.offsets
-        self.spread_now = spread(self.output)
-        if self.spread_now > _NEAR:
+        if not self._near():
             self.near_since = math.nan
         elif math.isnan(self.near_since):
             self.near_since = time
-        if self.spread_now <= _NEAR and math.isnan(self.first_near):
-            self.first_near = time
+            if math.isnan(self.first_near):
+                self.first_near = time
         if not team.many:
-            apart = np.linalg.norm(pose[:, None, :2] - pose[None, :, :2], axis=2)
-            self.least_distance = min(
-                self.least_distance, float(apart[np.triu_indices(3, 1)].min())
-            )
+            i, j = self._pairs
+            apart = np.linalg.norm(pose[i, :2] - pose[j, :2], axis=1)
+            self.least_distance = min(self.least_distance, float(apart.min()))
         self.peak = np.maximum(
             self.peak, [np.hypot(*twist[:, :2].T).max(), np.abs(twist[:, 2]).max()]
         )

@@ -41,6 +41,8 @@ def _large(theory: int, bodies: int, sights: int, cameras: int, crowds: int) -> 
     return (
         *_theory(theory),
         Grid(**BODY, dwell=(2.0, 5.0, 20.0), seeds=bodies),
+        Grid(**BODY, dwell=(0.5, 1.0, 10.0), seeds=bodies),
+        Grid(**BODY, side=0.0, virtual=True, seeds=min(bodies, 3)),
         Grid(**BODY, calibrated=False, seeds=bodies),
         Grid(**BODY, schedule=("case-i", "case-ii"), seeds=bodies),
         # F

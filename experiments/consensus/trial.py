@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from experiments.consensus import agreement, linear, physical
+from experiments.consensus import linear
 from mjmr.errors import InvalidInputError
 
 Metrics = dict[str, float | int | str | bool | None]
@@ -22,8 +22,8 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
     """Run one experiment.
 
     Raises:
-        InvalidInputError: The mode has no such experiment, or graphs that never meet the
-            structure condition and nobody asked for them.
+        InvalidInputError: The mode has no such experiment, parameters that do not go together,
+            or graphs that never meet the structure condition and nobody asked for them.
     """
     experiment, mode = condition["experiment"], condition["mode"]
     if mode not in MODES[experiment]:
@@ -32,6 +32,9 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
         )
     if mode == "linear":
         return linear.trial(condition, seed)
+    # MuJoCo, OpenCV and OSQP are loaded by the trials that use them
+    from experiments.consensus import agreement, physical
+
     if experiment == "agreement":
         return agreement.trial(condition, seed)
     return physical.trial(condition, seed)
@@ -39,12 +42,14 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
 
 def world(condition: Mapping[str, Any]) -> Any:
     """The hall of a physical condition with its robots, seed 0, for ``mjmr mjcf``."""
+    from experiments.consensus import physical
+
     return physical.Team(condition, 0).simulation.world
 
 
 def prepare() -> None:
     """Compile what trials call, by a short one."""
-    from experiments.consensus import study
+    from experiments.consensus import physical, study
 
     for sight in ("given", "rays"):
         condition = study.condition(mode="physical", sight=sight, duration=0.2)

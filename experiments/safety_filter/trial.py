@@ -9,7 +9,7 @@ import numpy as np
 
 from controllers.motion import Limits, Navigator, NavigatorConfig
 from controllers.safety import SafetyConfig, Unfiltered, VelocitySearch
-from experiments import safe_navigation
+from experiments import safe_navigation, safety_filter
 from experiments.safe_navigation import worlds as fields
 from experiments.safe_navigation.pilot import Pilot
 from experiments.safe_navigation.trackers import FilterTracker
@@ -138,7 +138,17 @@ def _crossing(condition: Mapping[str, Any], seed: int, parts: Parts) -> Metrics:
 
 
 def field_condition(condition: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The condition of safe-navigation whose world this one's is."""
+    """The condition of safe-navigation whose world this one's is.
+
+    Raises:
+        InvalidInputError: Another number of robots than the parameter's default.
+    """
+    usual = safety_filter.study.condition()["robots"]
+    if condition["robots"] != usual:
+        raise InvalidInputError(
+            f"robots={condition['robots']} needs scene={' or '.join(SWAPS)}; scene "
+            f"{condition['scene']} has its own robots, so leave it at {usual}"
+        )
     return safe_navigation.study.condition(
         mode="physical", scene=condition["scene"], sigma_mm=condition["sigma_mm"],
         duration=condition["duration"],

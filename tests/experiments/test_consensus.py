@@ -1,19 +1,25 @@
 """Study consensus: its graphs, its linear model, and short runs of bodies."""
 
+import subprocess
+import sys
 from typing import Any
 
 import numpy as np
 import pytest
 
-from controllers.consensus import check_structure, rooted
-from experiments.consensus import study
+from controllers.consensus import CanonicalModel, check_structure, rooted
+from experiments.consensus import quotes, study
 from experiments.consensus.claims import claims
 from experiments.consensus.graphs import random_admissible, team_graph, three
-from experiments.consensus.linear import degrees_of
+from experiments.consensus.linear import START, Runner, degrees_of, reference
+from experiments.consensus.linear import run as follow
 from experiments.consensus.physical import Team
 from experiments.consensus.plots import series
+from experiments.consensus.refusals import refuse_unfit
 from experiments.consensus.trial import trial, world
+from mjmr.claims import judge
 from mjmr.errors import InvalidInputError, TruthError
+from mjmr.table import Row, Table
 
 SHORT = {"mode": "physical", "duration": 4.0}
 
@@ -27,6 +33,40 @@ def test_claims_are_told_apart_and_name_parameters_there_are():
     assert len({c.id for c in every}) == len(every)
     names = {p.name for p in study.parameters}
     assert all(set(c.needs) <= names for c in every)
+
+
+def test_texts_are_quotes_or_say_that_they_are_not():
+    quoted = {v for k, v in vars(quotes).items() if k.isupper()}
+    for claim in claims():
+        assert claim.text in quoted or claim.text.startswith((quotes.ABSENT, "beyond the paper: "))
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "good", "bad"),
+    [
+        ("body-spread", {}, {"spread_m": 0.01}, {"spread_m": 0.03}),
+        ("body-spread", {}, {"spread_m": 0.01}, {"spread_m": None}),
+        ("body-error", {}, {"error_m": 0.01}, {"error_m": 0.06}),
+        ("body-contacts-all", {"loss": 0.5}, {"contacts": 0}, {"contacts": 1}),
+        ("body-distance-all", {"schedule": "case-i"}, {"least_distance_m": 2.0},
+         {"least_distance_m": 0.9}),
+        ("literal-meets", {"side": 0.0, "virtual": True}, {"spread_m": 0.01}, {"spread_m": 0.2}),
+        ("crowd-agrees", {"experiment": "graph", "robots": 100}, {"agree_s": 31.0},
+         {"agree_s": None}),
+        ("stochastic-rows-robots", {"mode": "linear"}, {"row_error": 1e-15}, {"row_error": 1e-8}),
+        ("stochastic-entries-robots", {"mode": "linear"}, {"least": 0.0}, {"least": -1e-8}),
+    ],
+)  # fmt: skip
+def test_one_bad_run_fails_a_claim(name, given, good, bad):
+    claim = next(c for c in claims() if c.id == name)
+    condition = study.condition(**{"mode": "physical", **given})
+
+    def verdict(*metrics: dict[str, Any]) -> str:
+        rows = [Row(condition, seed, "ok", m) for seed, m in enumerate(metrics)]
+        return judge(claim, Table(rows, study.parameters), "standard").verdict
+
+    assert verdict(good, good, good) == "holds"
+    assert verdict(good, bad, good) == "fails"
 
 
 @pytest.mark.parametrize("size", ["quick", "standard", "full"])
@@ -69,6 +109,31 @@ def test_degrees_below_one_or_of_the_wrong_number_are_refused():
         run(mode="physical", experiment="lemmas")
 
 
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"experiment": "graph", "sight": "camera", "robots": 4}, "has its graph given.*camera"),
+        ({"experiment": "graph", "sight": "rays"}, "has its graph given.*rays"),
+        ({"degrees": "1 2 3"}, "degrees and weight_y are of mode=linear; got degrees='1 2 3'"),
+        ({"weight_y": 0.5}, "weight_y=0.5"),
+        ({"sight": "rays", "loss": 0.5, "delay": 0.1}, "loss, delay are of what.*sight=rays"),
+        ({"experiment": "agreement", "noise": 0.05}, "noise are of what.*sight=rays"),
+        ({"side": 0.0}, "side=0 needs virtual=true"),
+        ({"sight": "rays", "scan": True, "avoid": "barrier"}, "scan=true.*avoid=none is allowed"),
+    ],
+)
+def test_what_does_not_go_together_is_refused_in_a_sentence(given, told):
+    with pytest.raises(InvalidInputError, match=told):
+        run(mode="physical", **given)
+
+
+def test_no_size_runs_what_is_refused():
+    for size in ("quick", "standard", "full"):
+        for condition, _ in study.trials(size):
+            if condition["mode"] == "physical":
+                refuse_unfit(condition)
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_random_sequences_are_admissible_and_the_others_between_are_not_all(seed):
     rng = np.random.default_rng(seed)
@@ -95,14 +160,36 @@ def test_graphs_of_many_are_connected_both_ways(name):
 def test_the_table_of_dwells_and_a_leader_with_a_velocity():
     found = run(dwell=5.0)
     assert (found["x_m"], found["y_m"]) == pytest.approx((4.511, 3.744), abs=1e-3)
-    from experiments.consensus.linear import START, Runner
-    from experiments.consensus.linear import run as follow
-
     schedule = three("case-i", 5.0, 300.0, 0.2, np.random.default_rng(0))
     velocity = np.array([[0.4, -0.2], [0.0, 0.0], [0.0, 0.0]])
     ends = follow(Runner([2, 2, 2]), START, schedule, 300.0, velocity=velocity)
     # a leader that starts with velocity w ends at p + w / 2
     assert (ends["x_m"], ends["y_m"]) == pytest.approx((6.2, 2.9), abs=1e-6)
+
+
+@pytest.mark.parametrize("dwell", [0.7, 0.1])
+def test_gains_change_at_the_instants_of_a_schedule_that_no_look_falls_on(dwell):
+    schedule = three("alternate", dwell, 8 * dwell, 0.2, np.random.default_rng(0))
+    model = CanonicalModel([2, 2, 2])
+    state = model.start(START)
+    for gains in schedule.gains:
+        state = model.transition(gains, dwell) @ state
+    middle = state[model.outputs].mean(axis=0)
+    found = follow(Runner([2, 2, 2]), START, schedule, 8 * dwell)
+    assert (found["x_m"], found["y_m"]) == pytest.approx(tuple(middle), abs=1e-12)
+    np.testing.assert_allclose(reference(schedule, 8 * dwell), middle, atol=1e-12)
+
+
+def test_a_linear_trial_loads_no_simulator_no_vision_and_no_solver():
+    code = (
+        "import sys\n"
+        "from experiments.consensus import study\n"
+        "from experiments.consensus.trial import trial\n"
+        "trial(study.condition(duration=1.0), 1000)\n"
+        "print([m for m in ('mujoco', 'cv2', 'osqp') if m in sys.modules])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
 
 
 def test_bodies_close_in_and_the_same_seed_gives_the_same_bits():
@@ -137,9 +224,24 @@ def test_a_dead_robot_stands_and_a_hundredfold_team_is_built_without_overlap():
     team.run(1.0)
     np.testing.assert_allclose(team.log.output[2], before, atol=1e-3)
     crowd = Team(study.condition(**SHORT, experiment="graph", robots=30, graph="complete"), 1000)
+    apart = crowd.log.spread_now
     crowd.run(2.0)
     assert crowd.log.meter.episodes == 0
-    assert crowd.log.spread_now < 1.3
+    assert crowd.log.spread_now < 0.6 * apart
+
+
+def test_virtual_robots_pass_through_each_other_and_are_carried_by_the_floor():
+    """Robots 1 and 2 have to pass each other: bodies jam, virtual ones do not."""
+    given = {"mode": "physical", "side": 1.2, "places": "crossed", "duration": 40.0}
+    bodies, virtual = run(**given), run(**given, virtual=True)
+    assert bodies["contacts"] > 0
+    assert virtual["contacts"] == 0
+    assert virtual["least_distance_m"] < 0.4 < bodies["least_distance_m"]
+    assert virtual["spread_m"] < 0.2 < bodies["spread_m"]
+    team = Team(study.condition(mode="physical", side=0.0, virtual=True), 1000)
+    team.run(1.0)
+    base = team.simulation.data.body("rover0/base")
+    assert abs(base.xpos[2]) < 0.01
 
 
 def test_the_world_can_be_written_as_mjcf():

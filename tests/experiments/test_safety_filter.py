@@ -69,6 +69,34 @@ def test_consensus_is_for_swaps():
         run(scene="A", method="consensus")
 
 
+@pytest.mark.parametrize("scene", ["A", "cross4", "cross10"])
+def test_other_numbers_of_robots_are_for_swaps(scene):
+    with pytest.raises(
+        InvalidInputError, match=f"robots=5 needs scene=swap or symmetric; .*{scene}"
+    ):
+        run(scene=scene, robots=5)
+    conditions = [c for size in ("quick", "standard", "full") for c, _ in study.trials(size)]
+    assert all(c["robots"] == 10 for c in conditions if c["scene"] == scene)
+
+
+def test_a_search_without_its_partner_is_an_error_and_not_left_out():
+    by_id = {c.id: c for c in claims()}
+    rows = [
+        Row(study.condition(scene=scene, method=method, **more), seed, "ok", metrics)
+        for scene, more in (("swap", {}), ("A", {"right": False}))
+        for method in ("barrier", "search")
+        for seed in range(3)
+        for metrics in [{"all_home_s": 20.0 + seed, "deadlock_s": 1.0, "goals": 30 + seed}]
+    ]
+    for claim in (by_id["swap-sooner-than-search"], by_id["swap-deadlocks-less-than-search"]):
+        whole = Table(rows, study.parameters).where(**claim.needs)
+        assert claim.evaluate(whole).n == 3
+        # the search has swapped with fewer seeds; the other way round one is lost
+        assert claim.evaluate(Table(rows[:5], study.parameters).where(**claim.needs)).n == 2
+        with pytest.raises(InvalidInputError, match="1 runs of the search have no partner"):
+            claim.evaluate(Table(rows[1:], study.parameters).where(**claim.needs))
+
+
 def test_another_filter_takes_the_role_and_nonsense_is_named():
     idle = (
         "import numpy as np\n"
