@@ -66,7 +66,7 @@ def _envelope() -> list[Claim]:
             text="0 <= v <= 2 m/s",
             published="2 m/s",
             how="the same: largest speed of the rear axle's middle over 0.5 s",
-            bound=Bound("<=", 2.0, tolerance=0.005),
+            bound=Bound("<=", 2.0),
             unit="m/s",
             sizes=_ALL,
             needs=driven,
