@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from controllers.perimeter import ACQUIRE, MOVING
-from experiments.perimeter.sensing import AIM
+from controllers.perimeter import ACQUIRE, MOVING, SEARCHING, TRACKING
+from experiments.perimeter.sensing import AIM, INSIDE
 from experiments.perimeter.worlds import HALF
 from mjmr.geometry import rotate
 
@@ -29,7 +29,6 @@ class Log:
         self._times: list[float] = []
         self._poses: list[np.ndarray] = []
         self._states: list[np.ndarray] = []
-        self._links: list[np.ndarray] = []
         self._agree: list[np.ndarray] = []
         self._meter = None
         if condition["mode"] != "unicycle":
@@ -102,6 +101,7 @@ class Log:
         late = joined[told & np.isfinite(joined)]
         return {
             "all_track": bool(np.isfinite(joined[on]).all()),
+            "all_track_end": bool((self._states[-1] == TRACKING)[on].all()),
             "tracking": int(np.isfinite(joined).sum()),
             "last_joined_s": float(np.max(joined[on]))
             if np.isfinite(joined[on]).all()
@@ -180,7 +180,7 @@ class Log:
         none = {"reported_s": -1.0, "stop_way_m": -1.0, "stopped_after_s": -1.0, "again": False,
                 "gave_up_s": -1.0}  # fmt: skip
         if failure.kind == "camera" and robot >= 0:
-            changes = [c for c in self._senses.bus.changes if c.robot == robot]
+            changes = [c for c in self._senses.bus.changes if (c.robot, c.device) == (robot, INSIDE)]
             gone = [c.time for c in changes if c.kind == "removed"]
             back = [c.time for c in changes if c.kind == "added"]
             step = np.hypot(*np.diff(poses[:, robot, :2], axis=0).T) / np.diff(times)
@@ -198,7 +198,8 @@ class Log:
             if moving.any():
                 first = int(np.argmax(moving))
                 rest = np.flatnonzero(states[first:, 0] != MOVING)
-                if len(rest):
+                # who meets the spill on the way has not given anything up
+                if len(rest) and states[first + rest[0], 0] == SEARCHING:
                     none["gave_up_s"] = float(times[first + rest[0]] - times[first])
         return none
 
