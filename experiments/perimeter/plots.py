@@ -51,7 +51,7 @@ def _states(rows: Table, folder: Path, task: str) -> Path:
 
 
 def _graph(rows: Table, folder: Path, task: str) -> Path:
-    """A row for every pair of trucks, drawn while they are within radio range."""
+    """A row for every pair of trucks, drawn while their true poses are within radio range."""
     path = folder / f"graph-{task}.svg"
     told, end = str(rows.values("graph")[0]), float(rows.values("time_s")[0])
     spans = []
@@ -64,7 +64,7 @@ def _graph(rows: Table, folder: Path, task: str) -> Path:
     flags = np.zeros((len(times), len(pairs)), dtype=bool)
     for pair, start, stop in spans:
         flags[times.index(start) : times.index(stop), pairs.index(pair)] = True
-    title = f"Radio graph over time: pairs within range, first trial ({task})"
+    title = f"Radio graph: pairs within range by true poses, first trial ({task})"
     with figure(path, title, "time [s]", "pair of trucks") as axes:
         flag_rows(axes, times, flags, pairs)
         axes.set_xlim(0, end)
