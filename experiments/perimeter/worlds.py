@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from controllers.perimeter.config import tracked_radius
 from mjmr.errors import InvalidInputError
+from mjmr.pillar import radii_at
 from mjmr.randomness import Streams
 from mjmr.robots.tamiya_txt1 import TamiyaTXT1
 from mjmr.world import World
@@ -46,10 +47,7 @@ class Scene:
 
     def radii(self, time: float) -> Array:
         """Radii of the discs (k,) at ``time`` [s], in m."""
-        now = self.lobes[:, 2] + self.growth * time
-        if self.growth > 0:
-            now = np.minimum(now, self.limit)
-        return np.maximum(now, self.limit) if self.growth < 0 else now
+        return radii_at(self.lobes[:, 2], self.growth, self.limit, time)
 
     def depth(self, points: Array, time: float) -> Array:
         """How far points (..., 2) are inside the spill [m], negative outside."""
