@@ -192,7 +192,7 @@ class Bus:
         self._time = time
         if not self._devices:
             return
-        # first what was there when the interval began; what comes now has the next one to be sent in
+        # what was there when the interval began; what comes now has the next one to be sent in
         asked = self._asked > 0.0
         self._asked, budget = _carry(self._asked, np.arange(len(self._devices)), budget)
         answered = asked & (self._asked == 0.0) & self._plugged
