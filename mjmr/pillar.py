@@ -28,9 +28,7 @@ def radii_at(first: ArrayLike, rate: ArrayLike, limit: ArrayLike, time: float) -
     Returns:
         Radii of the arguments' common shape [m].
     """
-    first, rate, limit = (
-        np.asarray(given, dtype=np.float64) for given in (first, rate, limit)
-    )
+    first, rate, limit = (np.asarray(given, dtype=np.float64) for given in (first, rate, limit))
     now = first + rate * max(time, 0.0)
     stopped = np.where(rate > 0, np.minimum(now, limit), np.maximum(now, limit))
     return np.where(rate == 0, first, stopped)

@@ -180,7 +180,9 @@ class Log:
         none = {"reported_s": -1.0, "stop_way_m": -1.0, "stopped_after_s": -1.0, "again": False,
                 "gave_up_s": -1.0}  # fmt: skip
         if failure.kind == "camera" and robot >= 0:
-            changes = [c for c in self._senses.bus.changes if (c.robot, c.device) == (robot, INSIDE)]
+            changes = [
+                c for c in self._senses.bus.changes if (c.robot, c.device) == (robot, INSIDE)
+            ]
             gone = [c.time for c in changes if c.kind == "removed"]
             back = [c.time for c in changes if c.kind == "added"]
             step = np.hypot(*np.diff(poses[:, robot, :2], axis=0).T) / np.diff(times)
