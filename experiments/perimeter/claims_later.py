@@ -78,6 +78,16 @@ def _joining() -> list[Claim]:
     return [
         *found,
         Claim(
+            id="odometry-drifts",
+            text="odometers (pose)",
+            how="the counts of the rear wheels integrated from start to end, by which nobody "
+            "steers: mean distance from where the trucks are in the end; largest of trials",
+            bound=Bound.within(0.001, 50.0),
+            unit="m",
+            needs=JOIN,
+            evaluate=extreme("drift_m"),
+        ),
+        Claim(
             id="all-track-stiff",
             text="(ours) the gain of the approach does not matter",
             how="as all-track with k = 0.3 in place of 0.3 / 2 pi; few seeds, of one of which it "

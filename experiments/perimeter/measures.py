@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from controllers.estimation.odometry import Odometry
 from controllers.perimeter import ACQUIRE, MOVING, SEARCHING, TRACKING
 from experiments.perimeter.sensing import AIM, INSIDE
 from experiments.perimeter.worlds import HALF
@@ -14,6 +15,33 @@ JOINED = 30.0  # s after joining, from which tracking counts
 WINDOW = 5  # periods of 0.1 s over which turn rates and speeds are taken
 STOPPED = 0.005  # m/s
 STILL = 30.0  # s, at the end, in which nobody may move
+
+
+class Drift:
+    """Where the trucks would be by the counts of their rear wheels alone; nobody steers by it."""
+
+    def __init__(self, scene: Any):
+        """Begin where they start."""
+        platform = scene.trucks.platform
+        self._encoders = scene.trucks.encoders
+        self._seen_at = float("nan")
+        self._odometry = Odometry(
+            scene.start,
+            radius=platform.rolling_radius,
+            track=platform.track,
+            counts_per_turn=self._encoders.counts_per_turn,
+        )
+
+    def see(self) -> None:
+        """Take the counts, if there are new ones."""
+        if self._encoders.sampled_at != self._seen_at:
+            self._seen_at = self._encoders.sampled_at
+            self._odometry.step(self._encoders.read())
+
+    def error(self, poses: np.ndarray) -> float:
+        """Mean distance from where they are (n, 3) [m]."""
+        way = self._odometry.poses[:, :2] - poses[:, :2]
+        return float(np.hypot(way[:, 0], way[:, 1]).mean())
 
 
 class Log:
@@ -35,6 +63,7 @@ class Log:
             from mjmr.metrics import ContactMeter
 
             self._meter = ContactMeter(simulation)
+        self._odometry = Drift(scene)
         self._hops = np.zeros(scene.trucks.n, dtype=np.int64)
         self._sees_at = float("nan")
         simulation.observe(self._see)
@@ -44,6 +73,7 @@ class Log:
         self._times.append(simulation.time)
         self._poses.append(simulation.truth.poses(self._scene.trucks))
         self._states.append(team.state.copy())
+        self._odometry.see()
         entering = (team.state == MOVING) & np.isnan(team.joined)
         self._hops = np.where(entering, np.maximum(self._hops, team.relay.hops), self._hops)
         if self._condition["sensing"] == "both":
@@ -88,6 +118,7 @@ class Log:
             **self._failing(times, poses, states),
             **self._contacts(poses, times),
             **self._agreement(),
+            "drift_m": self._odometry.error(poses[-1]),
             "states": _runs(times, states),
             "graph": self._graph(poses, times),
         }
