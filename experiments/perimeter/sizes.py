@@ -66,7 +66,7 @@ QUICK = Size(
     expected_minutes=0.3,
     note="half a minute of tracking, a circle of three, one truck's limits; decides few claims",
 )
-STANDARD = Size("standard", grids=grids(20, 3, 8), default_seeds=3, expected_minutes=15.0)
+STANDARD = Size("standard", grids=grids(20, 3, 8), default_seeds=3, expected_minutes=17.0)
 FULL = Size(
     "full",
     grids=(
