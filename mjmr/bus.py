@@ -192,11 +192,7 @@ class Bus:
         self._time = time
         if not self._devices:
             return
-        self._collect()
-        if time >= self._next_poll - 1e-9:
-            self._next_poll = max(self._next_poll + self.POLL, time)
-            # question and answer; who is not there leaves the question unanswered
-            self._asked = np.full_like(self._asked, 2.0 * frame_bits(1))
+        # what was there when the interval began; what comes now has the next one to be sent in
         asked = self._asked > 0.0
         self._asked, budget = _carry(self._asked, np.arange(len(self._devices)), budget)
         answered = asked & (self._asked == 0.0) & self._plugged
@@ -205,6 +201,11 @@ class Bus:
         self._waiting, _ = _carry(self._waiting, self._order, budget)
         self._deliver(waiting & (self._waiting == 0.0))
         self._manage(time, answered)
+        self._collect()
+        if time >= self._next_poll - 1e-9:
+            self._next_poll = max(self._next_poll + self.POLL, time)
+            # question and answer; who is not there leaves the question unanswered
+            self._asked = np.full_like(self._asked, 2.0 * frame_bits(1))
 
     def read(self, name: str) -> Array:
         """Newest message of a device that has arrived on each robot, first axis n; NaN: none yet.

@@ -27,10 +27,10 @@ class Bound:
     Args:
         op: ``<=``, ``<``, ``>=``, ``>``, ``==`` or ``in``.
         value: A number; for ``in`` the pair ``(low, high)``, ends included.
-        tolerance: For ``==``: largest distance from ``value`` that still counts.
+        tolerance: For ``==`` alone: largest distance from ``value`` that still counts.
 
     Raises:
-        InvalidInputError: Another operator, or a value that does not fit it.
+        InvalidInputError: Another operator, or a value or tolerance that does not fit it.
     """
 
     op: str
@@ -43,6 +43,10 @@ class Bound:
         ends = self.value if isinstance(self.value, tuple) else (self.value, self.value)
         if isinstance(self.value, tuple) != (self.op == "in") or len(ends) != 2:
             raise InvalidInputError("a bound takes a number, or for 'in' a pair (low, high)")
+        if self.tolerance and self.op != "==":
+            raise InvalidInputError(
+                f"a bound has a tolerance with == alone; got {self.op} with {self.tolerance:g}"
+            )
         if any(math.isnan(e) for e in ends) or ends[0] > ends[1] or not self.tolerance >= 0.0:
             raise InvalidInputError(f"not a bound: {self.op} {self.value} +- {self.tolerance}")
 

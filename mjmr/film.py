@@ -13,7 +13,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from mjmr.errors import InvalidInputError
+from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.film_options import FilmOptions
 from mjmr.footage import Footage
 from mjmr.overlay import draw_notes, draw_text, draw_trails, palette
@@ -54,10 +54,13 @@ class Film:
                 whole world.
             changes: Of the film's options, for this panel: ``camera``, ``follow`` and
                 ``trail``.
+
+        Raises:
+            InvalidInputError: An area that is not four numbers, or is empty.
         """
         footage = shown.footage() if isinstance(shown, Recording) else shown
         if area is not None:
-            footage = dataclasses.replace(footage, bounds=np.array(area, dtype=np.float64))
+            footage = dataclasses.replace(footage, bounds=_bounds(area))
         own = dataclasses.replace(self.options, **changes)
         self._panels.append((_Panel, footage, label, own))
 
@@ -77,8 +80,15 @@ class Film:
             label: Written in its corner.
             paint: Makes of a picture (h, w, 3) another one of the same shape; None: only one.
             size: Width and height of the pictures before they are fitted into the panel [px].
+
+        Raises:
+            UnknownNameError: The model has no such camera; lists those it has.
         """
         footage = shown.footage() if isinstance(shown, Recording) else shown
+        model = footage.model
+        names = [model.camera(k).name for k in range(model.ncam)]
+        if camera not in names:
+            raise UnknownNameError("camera of the model", camera, [n for n in names if n])
         self._panels.append((_EyePanel, footage, label, (camera, paint, size)))
 
     def write(self, path: str | Path) -> Path:
@@ -212,6 +222,19 @@ def _boxes_for_planes(model: mujoco.MjModel) -> None:
         model.geom_pos[k] -= thick * up
         model.geom_sameframe[k] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE
         model.geom_rbound[k] = np.linalg.norm(model.geom_size[k])
+
+
+def _bounds(area: Sequence[float]) -> NDArray[np.float64]:
+    """An area as bounds (4,)."""
+    try:
+        found = np.array(area, dtype=np.float64)
+    except (TypeError, ValueError):
+        found = np.zeros(0)
+    if found.shape != (4,) or not np.isfinite(found).all() or not (found[:2] < found[2:]).all():
+        raise InvalidInputError(
+            f"an area is (xmin, ymin, xmax, ymax) [m], the first two below the last two; got {area}"
+        )
+    return found
 
 
 class _Panel:

@@ -328,12 +328,12 @@ class TickedSimulation(ABC):
         """Go back (or forward) to ``snapshot``, taken in a simulation of the same world.
 
         Raises:
-            InvalidInputError: It has other groups, sensors or radios.
+            InvalidInputError: It has other groups, sensors, radios or buses.
         """
         if len(snapshot.parts) != len(self._owners()):
             raise InvalidInputError(
-                "this snapshot was taken with other groups, sensors or radios; set up the same "
-                "before restoring it"
+                "this snapshot was taken with other groups, sensors, radios or buses; set up the "
+                "same before restoring it"
             )
         self.step = snapshot.step
         self._set_physics_state(snapshot.physics)

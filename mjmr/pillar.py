@@ -5,14 +5,33 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError
 
 if TYPE_CHECKING:
     import mujoco
 
+Array = NDArray[np.float64]
 _GROWTH = "growth of "  # of a pillar's entry among a model's custom numbers: traces keep it
+
+
+def radii_at(first: ArrayLike, rate: ArrayLike, limit: ArrayLike, time: float) -> Array:
+    """Radii at ``time`` [s] of what grows or shrinks steadily until a limit: the one such law.
+
+    Args:
+        first: Radii at time 0 and before [m].
+        rate: Of their change [m/s].
+        limit: Where it ends [m]; what does not change has none.
+        time: [s].
+
+    Returns:
+        Radii of the arguments' common shape [m].
+    """
+    first, rate, limit = (np.asarray(given, dtype=np.float64) for given in (first, rate, limit))
+    now = first + rate * max(time, 0.0)
+    stopped = np.where(rate > 0, np.minimum(now, limit), np.maximum(now, limit))
+    return np.where(rate == 0, first, stopped)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,8 +93,7 @@ class Pillar:
         """Radius at ``time`` [s], in m."""
         if self.growth == 0.0 or self.limit is None:
             return self.radius
-        now = self.radius + self.growth * max(time, 0.0)
-        return min(now, self.limit) if self.growth > 0 else max(now, self.limit)
+        return float(radii_at(self.radius, self.growth, self.limit, time))
 
     @property
     def largest(self) -> float:
@@ -129,10 +147,9 @@ class Pillars:
         self.any = bool(told)
         self.change = bool(self._rate.any())
 
-    def radii(self, time: float) -> NDArray[np.float64]:
+    def radii(self, time: float) -> Array:
         """Radii (k,) at ``time`` [s], in m; see :meth:`Pillar.radius_at`."""
-        now = self._first + self._rate * max(time, 0.0)
-        return np.where(self._rate > 0, np.minimum(now, self._limit), np.maximum(now, self._limit))
+        return radii_at(self._first, self._rate, self._limit, time)
 
     def resize(self, model: "mujoco.MjModel", time: float) -> None:
         """Give them in ``model`` the radii they have at ``time`` [s]; their bounds stay."""

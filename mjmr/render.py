@@ -29,7 +29,17 @@ _open: "weakref.WeakSet[Renderer]" = weakref.WeakSet()
 
 
 class Renderer:
-    """Renders RGB pictures; ``draft`` without shadows and anti-aliasing, ``fine`` with both."""
+    """Renders RGB pictures; ``draft`` without shadows and anti-aliasing, ``fine`` with both.
+
+    Attributes:
+        leaves_out: Whether what is wholly outside of a camera's view is kept from OpenGL; the
+            pictures are the same, benchmarks compare.
+        model: A copy of what was given.
+        width: [px].
+        height: [px].
+    """
+
+    leaves_out = True
 
     def __init__(
         self, model: mujoco.MjModel, width: int, height: int, look: str = "draft", sides: int = 0
@@ -132,9 +142,13 @@ class Renderer:
         sides, drawing took ten times as long. Where there are shadows, whoever casts one counts.
         """
         model = self.model
-        if self._fine or not isinstance(camera, (int, np.integer, str)):
+        named = isinstance(camera, (int, np.integer, str))
+        if self._fine or not self.leaves_out or not named:
             return
         index = model.camera(camera).id
+        perspective = model.cam_projection[index] == mujoco.mjtProjection.mjPROJ_PERSPECTIVE
+        if not perspective or model.cam_sensorsize[index].any():
+            return  # its view is no cone, or not about its axis
         turn = data.cam_xmat[index].reshape(3, 3)
         x, y, z = (data.geom_xpos - data.cam_xpos[index]).dot(turn).T
         up = np.radians(model.cam_fovy[index]) / 2.0

@@ -279,6 +279,8 @@ class Simulation(TickedSimulation):
         return state
 
     def _set_physics_state(self, state: Any) -> None:
+        # contacts are computed anew here: with the radii of that instant
+        self._pillars.resize(self.model, self.time)
         if isinstance(state, mujoco.MjData):
             mujoco.mj_copyData(self.data, self.model, state)
             return

@@ -420,11 +420,6 @@ class World:
         """Boxes that go to and fro by themselves, with their names in the built model."""
         return [(name, prop) for name, prop in self.named_props() if isinstance(prop, Cart)]
 
-    @property
-    def pillars(self) -> Sequence[tuple[str, Pillar]]:
-        """Upright cylinders, with their geoms' names in the built model."""
-        return [(name, prop) for name, prop in self.named_props() if isinstance(prop, Pillar)]
-
     def named_props(self) -> Sequence[tuple[str, Box | Ball | Cart | Disc | Pillar]]:
         """Props with their names in the built model."""
         return [(f"{type(p).__name__.lower()}{i}", p) for i, p in enumerate(self.props)]

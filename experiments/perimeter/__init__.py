@@ -77,11 +77,23 @@ study = Study(
             ("none", "camera", "radio", "lie", "removed", "added"),
         ),
         Parameter("wrong", "share of wrong readings of the ray", 0.0, least=0.0, most=1.0),
-        Parameter("path", "of the leader (formation)", "straight", ("straight", "circle", "eight")),
+        Parameter(
+            "path",
+            "of the leader (formation); circle and eight begin at once, as does the eight's change "
+            "of side; eight-smooth: curvature without jumps",
+            "straight",
+            ("straight", "circle", "eight", "eight-smooth"),
+        ),
+        Parameter(
+            "heard",
+            "of the leader (formation), a tick old: moved on by the speeds told with it, or plain",
+            "extrapolated",
+            ("extrapolated", "plain"),
+        ),
         Parameter(
             "dt_ms", "largest physics timestep; it divides 0.1 s", 10.0, unit="ms", least=0.1
         ),
-        Parameter("duration", "of a run at most, simulated", 900.0, unit="s", least=0.1),
+        Parameter("duration", "of a run at most, simulated", 900.0, unit="s", least=1.0),
     ),
     sizes=(QUICK, STANDARD, FULL),
     trial=f"{_HERE}.trial:trial",

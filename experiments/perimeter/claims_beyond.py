@@ -1,7 +1,9 @@
 """Claims beyond the paper: the formation law, d_des on line, other edges, wrong readings."""
 
+from typing import Any
+
 from experiments.perimeter.evidence import both, extreme, flags, gain_of_radio, share, total
-from experiments.perimeter.sizes import GROWTH
+from experiments.perimeter.sizes import AFTERWARDS, GROWTH, PATHS
 from mjmr.claims import Bound, Claim
 
 _BUNCH = {"task": "stay", "start": "bunch", "mode": "physical", "failure": "none"}
@@ -15,31 +17,62 @@ def beyond() -> list[Claim]:
 
 
 def _formation() -> list[Claim]:
+    law = "(not in the paper) leader and two followers, separation-bearing law"
     found = []
     for path, bound in (("straight", 0.1), ("circle", 0.1), ("eight", 0.3)):
-        found.append(
-            Claim(
-                id=f"formation-{path}",
-                text="(not in the paper) leader and two followers, separation-bearing law",
-                how=f"{path}, leader at 0.8 m/s, followers 2 m off at +-150 degrees: distance of "
-                "each follower's point from its place, rms from 30 s on; worst trial",
-                bound=Bound("<=", bound),
-                unit="m",
-                needs={"task": "formation", "path": path, "mode": "physical"},
-                evaluate=extreme("place_rms_m"),
+        for heard, prefix, words in (
+            ("extrapolated", "formation", ""),
+            # the law as it was when the bounds were set; since then followers extrapolate
+            ("plain", "formation-plain", ", what is heard of the leader taken as it is; written"
+             f" {AFTERWARDS}"),
+        ):  # fmt: skip
+            found.append(
+                Claim(
+                    id=f"{prefix}-{path}",
+                    text=law,
+                    how=f"{path}, leader at 0.8 m/s, followers 2 m off at +-150 degrees: distance "
+                    "of each follower's point from its place, rms from 30 s on; worst trial"
+                    f"{words}",
+                    bound=Bound("<=", bound),
+                    unit="m",
+                    needs=_led(heard, path),
+                    evaluate=extreme("place_rms_m"),
+                )
             )
-        )
     return [
         *found,
+        Claim(
+            id="formation-eight-smooth",
+            text=law,
+            how="the eight without jumps of curvature, else as formation-eight; written "
+            f"{AFTERWARDS}",
+            bound=Bound("<=", 0.3),
+            unit="m",
+            needs=_led("extrapolated", "eight-smooth"),
+            evaluate=extreme("place_rms_m"),
+        ),
         Claim(
             id="formation-contacts",
             text="(not in the paper) the same",
             how="contacts of trucks, all paths together",
             bound=Bound("<=", 0.0),
-            needs={"task": "formation", "mode": "physical"},
+            needs=_led("extrapolated", *PATHS),
+            evaluate=total("contacts"),
+        ),
+        Claim(
+            id="formation-plain-contacts",
+            text="(not in the paper) the same",
+            how="contacts of trucks, all paths together, what is heard taken as it is; written "
+            f"{AFTERWARDS}",
+            bound=Bound("<=", 0.0),
+            needs=_led("plain", *PATHS),
             evaluate=total("contacts"),
         ),
     ]
+
+
+def _led(heard: str, *paths: str) -> dict[str, Any]:
+    return {"task": "formation", "path": paths, "mode": "physical", "heard": heard}
 
 
 def _estimated() -> list[Claim]:

@@ -6,6 +6,7 @@ import numpy as np
 
 from mjmr import statistics
 from mjmr.claims import Evidence, Table
+from mjmr.errors import InvalidInputError
 
 Test = Callable[[Table], np.ndarray]
 
@@ -16,6 +17,17 @@ def share(test: Test) -> Callable[[Table], Evidence]:
     def evaluate(table: Table) -> Evidence:
         passed = test(table)
         return Evidence(100.0 * float(np.mean(passed)), n=len(passed))
+
+    return evaluate
+
+
+def share_interval(test: Test) -> Callable[[Table], Evidence]:
+    """The same in per cent with Wilson's interval: what is known of seeds that were not run."""
+
+    def evaluate(table: Table) -> Evidence:
+        found = statistics.proportion(test(table))
+        low, high = found.interval
+        return Evidence(100.0 * found.value, (100.0 * low, 100.0 * high), found.n)
 
     return evaluate
 
@@ -47,6 +59,14 @@ def joined_and_found(table: Table) -> np.ndarray:
     """All track; at least one was told and one found it alone."""
     told, own = table.values("by_relay") >= 1, table.values("own_finders") >= 1
     return table.values("all_track").astype(bool) & told & own
+
+
+def untouched(table: Table) -> np.ndarray:
+    """No contact of trucks with each other, with walls or with the spill."""
+    contacts, obstacles = table.values("contacts"), table.values("obstacle_contact_s")
+    if (contacts < 0).any():
+        raise InvalidInputError("bodies without contact have none to count")
+    return (contacts == 0) & (obstacles == 0.0)
 
 
 def flags(metric: str, wanted: bool = True) -> Test:

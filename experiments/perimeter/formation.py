@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from controllers.consensus.leader_follower import SeparationBearing
+from experiments.perimeter.checks import SETTLE
 from mjmr.geometry import rotate, wrap_angle
 from mjmr.radio import Radio
 from mjmr.robots.tamiya_txt1 import TamiyaTXT1
@@ -17,8 +18,7 @@ PERIOD = 0.1
 SPEED = 0.8  # m/s, of the leader
 RADIUS = 10.0  # m, of the circle and of the eight's two
 SEPARATION, BEARINGS = 2.0, np.radians([150.0, -150.0])  # of the two followers
-RAMP = 8.0  # s, in which the leader's curvature changes
-SETTLE = 30.0  # s, until which errors do not count
+RAMP = 8.0  # s, in which the leader's curvature changes on the smooth eight
 AHEAD = 0.3  # m, of the followers' reference point before the axle
 
 
@@ -26,7 +26,8 @@ def formation(condition: Mapping[str, Any], seed: int) -> dict[str, Any]:
     """Errors of two followers that start off their places and follow a leader on a path.
 
     Where the leader is comes from poses that all three report by radio, with noise; the leader's
-    speeds are what it was commanded, by radio.
+    speeds are what it was commanded, by radio. What is heard is a tick old: the law takes it as it
+    is (``heard=plain``), or moved on by the speeds that came with it (``heard=extrapolated``).
     """
     rng = np.random.default_rng(np.random.SeedSequence([seed, 14]))
     world = World.rectangle(120.0, 60.0, wall_height=0.6, floor="concrete")
@@ -52,13 +53,9 @@ def formation(condition: Mapping[str, Any], seed: int) -> dict[str, Any]:
             command[0] = leads
             if radio.messages_sent.any() and np.isfinite(pose).all():
                 told, sent = radio.latest()
-                heard, age = (
-                    told[1:, 0],
-                    now - sent[1:, 0],
-                )  # what each follower heard of the leader
-                # where the leader has got to since, by the speeds it tells
-                heard[:, 2] += heard[:, 4] * age
-                heard[:, :2] += rotate(np.column_stack([heard[:, 3] * age, 0.0 * age]), heard[:, 2])
+                heard = told[1:, 0]  # what each follower heard of the leader
+                if condition["heard"] == "extrapolated":
+                    _move_on(heard, now - sent[1:, 0])
                 way = rotate(heard[:, :2] - pose[1:, :2], -pose[1:, 2])
                 seen = np.column_stack([way, wrap_angle(heard[:, 2] - pose[1:, 2])])
                 for k in range(2):
@@ -74,13 +71,20 @@ def _turn(path: str, now: float) -> float:
     if path == "straight" or now < 10.0:
         return 0.0
     lap = 2.0 * np.pi * RADIUS / SPEED
-    rise = min(1.0, (now - 10.0) / RAMP)
-    if path == "circle":
-        return SPEED / RADIUS * rise
-    # an eight has no corners: from one circle to the other the curvature goes through nought
     since = (now - 10.0) % (2.0 * lap)
-    way = min(since, abs(since - lap), 2.0 * lap - since) / (RAMP / 2.0)
-    return SPEED / RADIUS * min(rise, way, 1.0) * (1.0 if since < lap else -1.0)
+    side = 1.0 if path == "circle" or since < lap else -1.0
+    share = 1.0
+    if path == "eight-smooth":
+        # from one circle to the other the curvature goes through nought
+        way = min(since, abs(since - lap), 2.0 * lap - since) / (RAMP / 2.0)
+        share = min(way, (now - 10.0) / RAMP, 1.0)
+    return SPEED / RADIUS * share * side
+
+
+def _move_on(heard: np.ndarray, age: np.ndarray) -> None:
+    """Put the leader (k, 5) where it has got to in ``age`` [s] by the speeds it told."""
+    heard[:, 2] += heard[:, 4] * age
+    heard[:, :2] += rotate(np.column_stack([heard[:, 3] * age, 0.0 * age]), heard[:, 2])
 
 
 def _errors(track: np.ndarray) -> dict[str, float]:

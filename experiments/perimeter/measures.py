@@ -5,8 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from controllers.perimeter import ACQUIRE, MOVING
-from experiments.perimeter.sensing import AIM
+from controllers.estimation.odometry import Odometry
+from controllers.perimeter import ACQUIRE, MOVING, SEARCHING, TRACKING
+from experiments.perimeter.sensing import AIM, INSIDE
 from experiments.perimeter.worlds import HALF
 from mjmr.geometry import rotate
 
@@ -14,6 +15,33 @@ JOINED = 30.0  # s after joining, from which tracking counts
 WINDOW = 5  # periods of 0.1 s over which turn rates and speeds are taken
 STOPPED = 0.005  # m/s
 STILL = 30.0  # s, at the end, in which nobody may move
+
+
+class Drift:
+    """Where the trucks would be by the counts of their rear wheels alone; nobody steers by it."""
+
+    def __init__(self, scene: Any):
+        """Begin where they start."""
+        platform = scene.trucks.platform
+        self._encoders = scene.trucks.encoders
+        self._seen_at = float("nan")
+        self._odometry = Odometry(
+            scene.start,
+            radius=platform.rolling_radius,
+            track=platform.track,
+            counts_per_turn=self._encoders.counts_per_turn,
+        )
+
+    def see(self) -> None:
+        """Take the counts, if there are new ones."""
+        if self._encoders.sampled_at != self._seen_at:
+            self._seen_at = self._encoders.sampled_at
+            self._odometry.step(self._encoders.read())
+
+    def error(self, poses: np.ndarray) -> float:
+        """Mean distance from where they are (n, 3) [m]."""
+        way = self._odometry.poses[:, :2] - poses[:, :2]
+        return float(np.hypot(way[:, 0], way[:, 1]).mean())
 
 
 class Log:
@@ -29,13 +57,13 @@ class Log:
         self._times: list[float] = []
         self._poses: list[np.ndarray] = []
         self._states: list[np.ndarray] = []
-        self._links: list[np.ndarray] = []
         self._agree: list[np.ndarray] = []
         self._meter = None
         if condition["mode"] != "unicycle":
             from mjmr.metrics import ContactMeter
 
             self._meter = ContactMeter(simulation)
+        self._odometry = Drift(scene)
         self._hops = np.zeros(scene.trucks.n, dtype=np.int64)
         self._sees_at = float("nan")
         simulation.observe(self._see)
@@ -45,6 +73,7 @@ class Log:
         self._times.append(simulation.time)
         self._poses.append(simulation.truth.poses(self._scene.trucks))
         self._states.append(team.state.copy())
+        self._odometry.see()
         entering = (team.state == MOVING) & np.isnan(team.joined)
         self._hops = np.where(entering, np.maximum(self._hops, team.relay.hops), self._hops)
         if self._condition["sensing"] == "both":
@@ -89,6 +118,7 @@ class Log:
             **self._failing(times, poses, states),
             **self._contacts(poses, times),
             **self._agreement(),
+            "drift_m": self._odometry.error(poses[-1]),
             "states": _runs(times, states),
             "graph": self._graph(poses, times),
         }
@@ -102,6 +132,7 @@ class Log:
         late = joined[told & np.isfinite(joined)]
         return {
             "all_track": bool(np.isfinite(joined[on]).all()),
+            "all_track_end": bool((self._states[-1] == TRACKING)[on].all()),
             "tracking": int(np.isfinite(joined).sum()),
             "last_joined_s": float(np.max(joined[on]))
             if np.isfinite(joined[on]).all()
@@ -180,7 +211,9 @@ class Log:
         none = {"reported_s": -1.0, "stop_way_m": -1.0, "stopped_after_s": -1.0, "again": False,
                 "gave_up_s": -1.0}  # fmt: skip
         if failure.kind == "camera" and robot >= 0:
-            changes = [c for c in self._senses.bus.changes if c.robot == robot]
+            changes = [
+                c for c in self._senses.bus.changes if (c.robot, c.device) == (robot, INSIDE)
+            ]
             gone = [c.time for c in changes if c.kind == "removed"]
             back = [c.time for c in changes if c.kind == "added"]
             step = np.hypot(*np.diff(poses[:, robot, :2], axis=0).T) / np.diff(times)
@@ -198,7 +231,8 @@ class Log:
             if moving.any():
                 first = int(np.argmax(moving))
                 rest = np.flatnonzero(states[first:, 0] != MOVING)
-                if len(rest):
+                # who meets the spill on the way has not given anything up
+                if len(rest) and states[first + rest[0], 0] == SEARCHING:
                     none["gave_up_s"] = float(times[first + rest[0]] - times[first])
         return none
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from controllers.perimeter.states import STATES
 from mjmr import statistics
-from mjmr.plot import figure, interval_line
+from mjmr.plot import figure, flag_rows, interval_line
 from mjmr.table import Table
 
 _COLOURS = ("0.8", "tab:orange", "tab:cyan", "tab:blue")
@@ -51,19 +51,22 @@ def _states(rows: Table, folder: Path, task: str) -> Path:
 
 
 def _graph(rows: Table, folder: Path, task: str) -> Path:
-    """A row for every pair of trucks, drawn while they are within radio range."""
+    """A row for every pair of trucks, drawn while their true poses are within radio range."""
     path = folder / f"graph-{task}.svg"
     told, end = str(rows.values("graph")[0]), float(rows.values("time_s")[0])
-    spans: dict[str, list[tuple[float, float]]] = {}
+    spans = []
     for entry in told.split():
         pair, times = entry.split(":")
         start, stop = (float(t) for t in times.split("-"))
-        spans.setdefault(pair, []).append((start, stop - start))
-    title = f"Radio graph over time: pairs within range, first trial ({task})"
+        spans.append((pair, start, stop))
+    pairs = sorted({pair for pair, *_ in spans})
+    times = sorted({0.0, end, *(t for _, *ends in spans for t in ends)})
+    flags = np.zeros((len(times), len(pairs)), dtype=bool)
+    for pair, start, stop in spans:
+        flags[times.index(start) : times.index(stop), pairs.index(pair)] = True
+    title = f"Radio graph: pairs within range by true poses, first trial ({task})"
     with figure(path, title, "time [s]", "pair of trucks") as axes:
-        for row, pair in enumerate(sorted(spans)):
-            axes.broken_barh(spans[pair], (row - 0.35, 0.7), color="tab:blue")
-        axes.set_yticks(range(len(spans)), sorted(spans))
+        flag_rows(axes, times, flags, pairs)
         axes.set_xlim(0, end)
     return path
 

@@ -43,6 +43,7 @@ def mount(scene: Scene, condition: Mapping[str, Any]) -> None:
         ),
         "arc",
     )  # fmt: skip
+    trucks.mount(trucks.platform.default_sensors()["encoders"], "encoders")
     both = condition["sensing"] == "both"
     # a camera whose pictures nobody reads costs nothing; films look through it
     eye = Camera(width=WIDTH, height=HEIGHT, rate=CAMERA_RATE, position=EYE, look_at=AIM)

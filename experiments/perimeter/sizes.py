@@ -7,7 +7,9 @@ JOIN = {"task": "join", "start": "scattered"}
 STAY = {"task": "stay", "start": "bunch", "duration": 600.0}
 GROWTH = 0.0125  # m/s, the paper's
 FACTORS = (0.0, 0.8, 1.2)  # of the even chord; 0: 1 - .05 / (n - 1)
+SIXTH = 1.0  # of the chord of six: d_des is not below it, and they may stop
 LATER = 660.0  # s: 60 s, then 600 s to be even again
+AFTERWARDS = "after quick's seed 0 and half a standard run had been seen"  # of claims, on them
 PATHS = ("straight", "circle", "eight")
 SWEEP = (0.6, 0.7, 0.8, 0.9, 0.95, 1.0, 1.05, 1.1, 1.2, 1.3, 1.4)
 RANGES = (0.0, 10.0, 25.0, 150.0)  # m, of the radio
@@ -35,13 +37,18 @@ def grids(join: int, few: int, sweep: int) -> tuple[Grid, ...]:
             task="stay", start="even", failure=("removed", "added"), estimated=True,
             robots=5, duration=LATER, seeds=few,
         ),
+        Grid(
+            task="stay", start="even", failure="added", robots=6, factor=SIXTH, duration=LATER,
+            seeds=few,
+        ),
         Grid(**JOIN, failure=("camera", "radio", "lie"), seeds=few),
         Grid(task="stay", start="bunch", sensing="camera", duration=120.0, seeds=few),
         Grid(task="stay", start="bunch", sensing="both", duration=60.0, seeds=1),
         Grid(task="stay", start="bunch", wrong=0.2, duration=200.0, seeds=few),
         Grid(task="stay", start="bunch", radius=15.0, growth=-GROWTH, duration=300.0, seeds=few),
         Grid(**JOIN, edge="lobes", seeds=few),
-        Grid(task="formation", path=PATHS, seeds=few),
+        Grid(task="formation", path=(*PATHS, "eight-smooth"), seeds=few),
+        Grid(task="formation", path=PATHS, heard="plain", seeds=few),
         Grid(task="envelope", seeds=few),
         Grid(**JOIN, mode="unicycle", d_com=RANGES, seeds=sweep),
     )  # fmt: skip
@@ -59,7 +66,7 @@ QUICK = Size(
     expected_minutes=0.3,
     note="half a minute of tracking, a circle of three, one truck's limits; decides few claims",
 )
-STANDARD = Size("standard", grids=grids(20, 3, 8), default_seeds=3, expected_minutes=15.0)
+STANDARD = Size("standard", grids=grids(20, 3, 8), default_seeds=3, expected_minutes=17.0)
 FULL = Size(
     "full",
     grids=(

@@ -8,6 +8,7 @@ import numpy as np
 
 from controllers.perimeter import STATES, PerimeterConfig, PerimeterTeam
 from controllers.perimeter.config import even_factor, tracked_radius
+from experiments.perimeter.checks import check
 from experiments.perimeter.failures import Failure
 from experiments.perimeter.measures import Log
 from experiments.perimeter.sensing import Senses, mount
@@ -29,6 +30,7 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
     Returns:
         Metrics; see :class:`experiments.perimeter.measures.Log`.
     """
+    check(condition)
     if condition["task"] == "formation":
         from experiments.perimeter.formation import formation
 

@@ -8,19 +8,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controllers.perimeter.config import tracked_radius
-from mjmr.errors import InvalidInputError
+from experiments.perimeter.checks import (
+    BUNCH,
+    CLEAR,
+    HALF,
+    OFF,
+    SPREAD,
+    check,
+    largest_radius,
+    limit_of,
+)
+from mjmr.pillar import radii_at
 from mjmr.randomness import Streams
 from mjmr.robots.tamiya_txt1 import TamiyaTXT1
 from mjmr.world import World
 
 Array = NDArray[np.float64]
-HALF = 50.0  # m
 WALL = 0.6  # m, high
 SPILL_HEIGHT = 0.4  # m
-LIMIT_GROWTH = 20.0  # m, radius at which a spill stops growing
-LEAST = 2.0  # m, radius at which one stops shrinking
-CLEAR = 8.0  # m, from walls, spill and others where a truck starts
-SPREAD = 15.0  # m, of the spill's centre from the hall's, along x and y
 PARKED = (HALF - 6.0, -HALF + 6.0)  # where robots stand that are switched off
 
 
@@ -46,10 +51,7 @@ class Scene:
 
     def radii(self, time: float) -> Array:
         """Radii of the discs (k,) at ``time`` [s], in m."""
-        now = self.lobes[:, 2] + self.growth * time
-        if self.growth > 0:
-            now = np.minimum(now, self.limit)
-        return np.maximum(now, self.limit) if self.growth < 0 else now
+        return radii_at(self.lobes[:, 2], self.growth, self.limit, time)
 
     def depth(self, points: Array, time: float) -> Array:
         """How far points (..., 2) are inside the spill [m], negative outside."""
@@ -66,21 +68,12 @@ def build(condition: Mapping[str, Any], seed: int) -> Scene:
     """Build the scene of a condition.
 
     Raises:
-        InvalidInputError: A spill that the hall cannot hold, with room for trucks around it.
+        InvalidInputError: What :func:`experiments.perimeter.checks.check` refuses.
     """
+    check(condition)
     rng = Streams(seed).generator("scene")
-    radius, growth = condition["radius"], condition["growth"]
-    limit = radius if not growth else (LIMIT_GROWTH if growth > 0 else LEAST)
-    if growth > 0:
-        limit = max(limit, radius)
-    largest = max(radius, limit)
-    room = HALF - 2.0 * CLEAR
-    if largest > room:
-        raise InvalidInputError(
-            f"a spill of {largest:g} m radius does not fit: in a hall of {2 * HALF:g} m, with "
-            f"{2 * CLEAR:g} m for trucks around it, the largest has {room:g} m"
-        )
-    spread = min(SPREAD, room - largest)
+    radius, growth, limit = condition["radius"], condition["growth"], limit_of(condition)
+    spread = min(SPREAD, HALF - 2.0 * CLEAR - largest_radius(condition))
     centre = rng.uniform(-spread, spread, 2)
     hall = World.rectangle(2 * HALF, 2 * HALF, wall_height=WALL, floor="concrete")
     lobes = _lobes(condition["edge"], centre, radius)
@@ -106,6 +99,7 @@ def _starts(condition: Mapping[str, Any], lobes: Array, rng: np.random.Generator
         return _on_perimeter(condition, lobes[0], rng)
     n = condition["robots"]
     poses = np.empty((n, 3))
+    # it ends: checks.py lets no more trucks come here than are soon put down
     for i in range(n):
         while True:
             at = rng.uniform(-HALF + CLEAR, HALF - CLEAR, 2)
@@ -122,7 +116,7 @@ def _on_perimeter(condition: Mapping[str, Any], disc: Array, rng: np.random.Gene
     n, late = condition["robots"], condition["failure"] == "added"
     there = n - late
     way = tracked_radius(disc[2])
-    gaps = rng.uniform(3.6, 4.5, there) / way
+    gaps = rng.uniform(*BUNCH, there) / way
     if condition["start"] == "even":
         gaps = np.full(there, 2.0 * np.pi / there)
     turn = rng.uniform(-np.pi, np.pi) + np.cumsum(gaps)
@@ -133,7 +127,7 @@ def _on_perimeter(condition: Mapping[str, Any], disc: Array, rng: np.random.Gene
     poses = poses[rng.permutation(there)]
     if late:
         out = rng.uniform(-np.pi, np.pi)
-        far = way + 15.0
+        far = way + OFF
         spot = [disc[0] + far * np.cos(out), disc[1] + far * np.sin(out), out + np.pi]
         poses = np.vstack([poses, spot])
     return poses

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError
-from mjmr.geometry import look_at, rotation_matrix
+from mjmr.geometry import look_at
 from mjmr.randomness import SampleNoise
 from mjmr.sensors.base import Sensor
 from mjmr.sensors.visual_arc import KINDS, NOTHING, kinds_of
@@ -96,21 +96,20 @@ class Spot(Sensor):
     def observe(self, time: float) -> Any:
         """Where everything is now."""
         assert self._simulation is not None
-        return self._simulation.visible_state(), self._simulation.base_poses_of(self._group)
+        return self._simulation.visible_state()
 
     def compute(self, state: Any, number: int) -> Array:
         """Cast the rays, spoil what they tell."""
         assert self._simulation is not None
-        visible, bases = state
         scene = self._simulation.rays
         if self._kinds is None:
             self._kinds = kinds_of(scene.model, scene.names)
-        scene.show(visible)
-        turns = np.array([rotation_matrix(q) for q in bases[:, 3:]])
-        origins = bases[:, :3] + turns @ self.position
+        scene.show(state)
+        places, turns = (part[self._rows] for part in scene.bases())
         _, hits, _ = scene.cast(
-            origins, turns @ self._frame, self._rows, np.zeros(1), self.max_range
-        )
+            places + turns @ self.position, turns @ self._frame, self._rows, np.zeros(1),
+            self.max_range,
+        )  # fmt: skip
         kinds = self._kinds[hits[:, 0]]
         met = np.where(hits[:, 0] < 0, NOTHING, kinds) == self._kind
         if self.wrong > 0:

@@ -1,13 +1,20 @@
 """The study: worlds, short trials, and what its claims stand on."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from controllers.perimeter import ACQUIRE, MOVING, SEARCHING, TRACKING
 from experiments.perimeter import study
 from experiments.perimeter.claims import claims
+from experiments.perimeter.evidence import flags, share, share_interval, untouched
+from experiments.perimeter.measures import Log
 from experiments.perimeter.plots import plots
+from experiments.perimeter.sensing import INSIDE
 from experiments.perimeter.trial import trial
 from experiments.perimeter.worlds import build
+from mjmr.bus import Change
 from mjmr.errors import InvalidInputError
 from mjmr.table import Row, Table
 
@@ -86,3 +93,59 @@ def test_plots_are_drawn_of_a_trial(tmp_path):
     written = plots(Table([row], study.parameters), tmp_path)
     assert {p.name for p in written} == {"states-stay.svg", "graph-stay.svg"}
     assert all(p.read_text().count("path") > 5 for p in written)
+
+
+def test_odometry_drifts_and_nobody_steers_by_it():
+    found = run(task="join", duration=40.0)
+    assert 0.0 < found["drift_m"] < 1.0
+    still = run(task="join", duration=40.0, mode="unicycle")
+    # wheels that cannot slip are read as whole counts
+    assert 0.0 < still["drift_m"] < found["drift_m"]
+
+
+def _rows(**metrics):
+    condition = study.condition(task="join")
+    values = zip(*metrics.values(), strict=True)
+    told = [dict(zip(metrics, row, strict=True)) for row in values]
+    return Table(
+        [Row(condition=condition, seed=k, status="ok", metrics=m) for k, m in enumerate(told)],
+        study.parameters,
+    )
+
+
+def test_shares_have_wilson_s_interval_where_asked():
+    table = _rows(all_track=[True] * 19 + [False])
+    plain, wide = (f(flags("all_track"))(table) for f in (share, share_interval))
+    assert plain.measured == wide.measured == pytest.approx(95.0)
+    assert plain.interval is None
+    assert wide.interval == pytest.approx((76.4, 99.1), abs=0.1)
+
+
+def test_any_contact_counts_and_bodies_without_contact_are_refused():
+    table = _rows(contacts=[0, 1, 0], obstacle_contact_s=[0.0, 0.0, 0.1])
+    assert untouched(table).tolist() == [True, False, False]
+    with pytest.raises(InvalidInputError, match="without contact"):
+        untouched(_rows(contacts=[-1], obstacle_contact_s=[-1.0]))
+
+
+@pytest.mark.parametrize(
+    ("after", "gave_up"), [(SEARCHING, True), (ACQUIRE, False), (TRACKING, False)]
+)
+def test_a_location_is_given_up_by_searching_again_alone(after, gave_up):
+    states = np.array([[SEARCHING]] * 5 + [[MOVING]] * 10 + [[after]] * 5)
+    log = SimpleNamespace(_failure=SimpleNamespace(kind="lie", robot=0))
+    found = Log._failing(log, 0.1 * np.arange(20), np.zeros((20, 1, 3)), states)  # pyright: ignore
+    assert found["gave_up_s"] == pytest.approx(1.0 if gave_up else -1.0)
+
+
+def test_reports_are_those_of_the_camera():
+    changes = [
+        Change(1.0, 0, "pose", "removed"), Change(2.5, 0, INSIDE, "removed"),
+        Change(3.0, 1, INSIDE, "removed"),
+    ]  # fmt: skip
+    log = SimpleNamespace(
+        _failure=SimpleNamespace(kind="camera", robot=0, at=2.0),
+        _senses=SimpleNamespace(bus=SimpleNamespace(changes=changes)),
+    )
+    found = Log._failing(log, 0.1 * np.arange(50), np.zeros((50, 2, 3)), np.zeros((50, 2)))  # pyright: ignore
+    assert found["reported_s"] == pytest.approx(0.5)

@@ -272,3 +272,12 @@ def test_reports_say_the_same_in_every_form():
     assert undecided_line(verdicts, "standard") == ""
     assert verdict_table(verdicts, "t", "quick").row_count == 0
     assert undecided_line(verdicts, "quick").endswith("not at quick: one, two, three")
+
+
+def test_a_tolerance_is_for_equality_alone():
+    assert Bound("==", 2.0, tolerance=0.005).judge(2.004, 2.004) == "holds"
+    for op in ("<=", "<", ">=", ">"):
+        with pytest.raises(InvalidInputError, match="tolerance with == alone"):
+            Bound(op, 2.0, tolerance=0.005)
+    with pytest.raises(InvalidInputError, match="tolerance with == alone"):
+        Bound("in", (1.0, 2.0), tolerance=0.005)

@@ -1,9 +1,13 @@
 """Films through a robot's camera, of an area, with pillars; and what pictures leave out."""
 
+import copy
+
+import mujoco
 import numpy as np
 import pytest
 
 from mjmr import Camera, Film, FilmOptions, Recording, Simulation, TamiyaTXT1, World
+from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.render import Renderer
 
 OPTIONS = FilmOptions(width=640, height=484)
@@ -56,8 +60,6 @@ def test_an_eye_shows_the_robot_s_view_and_what_is_made_of_it(recording):
 @pytest.mark.parametrize("sides", [20, 90])
 def test_what_pictures_leave_out_is_not_in_them(recording, sides, monkeypatch):
     footage = recording.footage()
-    import mujoco
-
     data = mujoco.MjData(footage.model)
     data.qpos[:] = footage.positions[-1]
     mujoco.mj_kinematics(footage.model, data)
@@ -71,7 +73,37 @@ def test_what_pictures_leave_out_is_not_in_them(recording, sides, monkeypatch):
             assert np.array_equal(renderer.model.geom_group, groups)
             counted = renderer._renderer.scene.ngeom
             with monkeypatch.context() as all_of_it:
-                all_of_it.setattr(renderer, "_leave_out", lambda *_: None)
+                all_of_it.setattr(renderer, "leaves_out", False)
                 every = renderer.picture(data, eye)
             assert counted < renderer._renderer.scene.ngeom - 50
             assert np.array_equal(few, every)
+
+
+def test_a_camera_without_perspective_leaves_out_nothing(recording):
+    footage = recording.footage()
+    data = mujoco.MjData(footage.model)
+    data.qpos[:] = footage.positions[-1]
+    mujoco.mj_kinematics(footage.model, data)
+    mujoco.mj_camlight(footage.model, data)
+    model = copy.copy(footage.model)
+    eye = "tamiya_txt10/eye"
+    model.cam_projection[model.camera(eye).id] = mujoco.mjtProjection.mjPROJ_ORTHOGRAPHIC
+    model.cam_fovy[model.camera(eye).id] = 20.0  # m, of such a camera
+    with Renderer(model, 160, 120) as renderer:
+        few = renderer.picture(data, eye)
+        renderer.leaves_out = False
+        assert np.array_equal(few, renderer.picture(data, eye))
+
+
+def test_an_unknown_camera_is_told_from_those_there_are(recording):
+    film = Film("t", OPTIONS)
+    with pytest.raises(UnknownNameError, match="tamiya_txt10/eye"):
+        film.add_eye(recording, "tamiya_txt10/ear")
+
+
+@pytest.mark.parametrize(
+    "area", [(0.0, 1.0, 2.0), (2.0, 0.0, 1.0, 1.0), (0.0, 0.0, np.nan, 1.0), "wide"]
+)
+def test_an_area_is_four_numbers_in_order(recording, area):
+    with pytest.raises(InvalidInputError, match=r"xmin, ymin, xmax, ymax"):
+        Film("t", OPTIONS).add(recording, area=area)

@@ -209,7 +209,7 @@ def test_trails_go_back_as_far_as_they_are_asked_to():
 def panel_track(film, index):
     from mjmr.film import _Panel
 
-    footage, label, options = film._panels[0]
+    _, footage, label, options = film._panels[0]
     panel = _Panel(footage, label, 64, 64, options)
     try:
         return footage.poses[panel._trail_rows(index), :, :2]

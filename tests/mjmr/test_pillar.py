@@ -1,12 +1,13 @@
 """Pillars: contact, rays and pictures follow a radius that is a function of time."""
 
+import mujoco
 import numpy as np
 import pytest
 
 from mjmr import Camera, Simulation, Spot, TamiyaTXT1, VisualArc, World
 from mjmr.errors import InvalidInputError
 from mjmr.kinematics import KinematicSimulation
-from mjmr.pillar import Pillar
+from mjmr.pillar import Pillar, radii_at
 from mjmr.sensors.visual_arc import PILLAR
 
 
@@ -62,9 +63,38 @@ def test_restoring_a_snapshot_restores_the_radius():
     for _ in simulation.ticks(3.0):
         pass
     simulation.restore(kept)
+    # at once, before anything moves: the radius of the next period is that of its beginning
+    assert simulation.model.geom_size[geom, 0] == pytest.approx(1.2, abs=1e-9)
     for _ in simulation.ticks(0.1):
         pass
     assert simulation.model.geom_size[geom, 0] == pytest.approx(size + 0.01, abs=1e-9)
+
+
+def test_contacts_right_after_restoring_are_those_of_the_radius_of_that_instant():
+    world, _ = hall(distance=1.0, radius=1.0, growth=0.2, limit=4.0)
+    simulation = Simulation(world, control_period=0.1, dt_max=0.01)
+    model, data = simulation.model, simulation.data
+    geom = model.geom("pillar0").id
+
+    def touched():
+        return bool((data.contact.geom == geom).any())
+
+    kept = simulation.snapshot()
+    for _ in simulation.ticks(5.0):
+        pass
+    grown = model.geom_size[geom, 0]
+    simulation.restore(kept)
+    assert not touched()
+    # the truck where it was before, in the pillar that came later
+    model.geom_size[geom, 0] = grown
+    mujoco.mj_forward(model, data)
+    assert touched()
+
+
+def test_what_stops_growing_or_shrinking_stops_at_its_limit():
+    first, rate, limit = [1.0, 1.0, 1.0], [0.1, -0.1, 0.0], [1.5, 0.8, 9.0]
+    for time, expected in ((-1.0, [1.0, 1.0, 1.0]), (1.0, [1.1, 0.9, 1.0]), (9.0, [1.5, 0.8, 1.0])):
+        assert radii_at(first, rate, limit, time) == pytest.approx(expected)
 
 
 def test_pictures_show_the_same_edge_as_rays():
