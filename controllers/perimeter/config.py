@@ -26,7 +26,10 @@ class PerimeterConfig:
         spiral_turn: a, with which a spiral begins [rad/s].
         spiral_decay: b, by which it unwinds [1/rad].
         wall_trigger: Distance to the boundary at which the robot turns inwards [m].
-        wall_release: Distance at which it searches on [m].
+        wall_release: Distance at which it searches on [m]; nearer to two walls is a corner.
+        corner_release: Distance to the farther wall at which a corner is left [m].
+        wall_margin: That a turn leaves to every wall, at a lower speed if it must be [m].
+        least_speed: Of that turn [m/s]; slower, the steering's lock allows no ``top_turn``.
         approach_gain: k of the potential field's heading law [1/s]: soft 0.3 / 2 pi, stiff 0.3.
         avoid_radius: Within which rule 3 holds [m].
         guard_radius: Within which somebody ahead is waited for [m].
@@ -61,6 +64,9 @@ class PerimeterConfig:
     spiral_decay: float = 0.1
     wall_trigger: float = 6.0
     wall_release: float = 8.0
+    corner_release: float = 10.0
+    wall_margin: float = 2.0
+    least_speed: float = 0.2
     approach_gain: float = 0.3 / (2.0 * math.pi)
     avoid_radius: float = 2.5
     guard_radius: float = 3.5

@@ -43,17 +43,50 @@ def test_the_spiral_unwinds_and_goes_on_after_an_interruption():
     assert abs(spiral.command(0.0, everyone)[0, 0]) == 0.0  # v = v_s (1 - e^-t)
 
 
-@pytest.mark.parametrize("yaw", np.linspace(-np.pi, np.pi, 17))
-@pytest.mark.parametrize("at", [(43.0, 3.0), (39.5, 39.5), (-39.5, 43.5), (-43.9, -39.5)])
-def test_nobody_reaches_the_boundary_from_anywhere_beside_it(at, yaw):
+YAWS = np.linspace(-np.pi, np.pi, 17)
+PERIOD, LOCK, WHEELBASE = 0.1, np.radians(28.0), 0.31  # s, rad, m: of a truck
+
+
+def nearest_to_the_boundary(at, yaw):
+    """Distance of a truck that drives on, at full speed at first, and heeds the boundary [m]."""
     boundary = Boundary(1, CONFIG)
-    pose, nearest = np.array([[*at, yaw]]), np.inf
+    pose, nearest, speed = np.array([[*at, yaw]]), np.inf, 1.0
     for _ in range(600):
         command = boundary.command(pose)
-        straight = np.array([[1.0, 0.0]])
-        pose = drive(pose, np.where(boundary.active[:, None], command, straight))
+        wanted, turn = command[0] if boundary.active[0] else (1.0, 0.0)
+        speed += np.clip(wanted - speed, -PERIOD, PERIOD)  # brakes at 1 m/s^2
+        turn = np.clip(turn, -speed * np.tan(LOCK) / WHEELBASE, speed * np.tan(LOCK) / WHEELBASE)
+        pose = drive(pose, np.array([[speed, turn]]))
         nearest = min(nearest, 50.0 - np.abs(pose[0, :2]).max())
-    assert nearest > 1.2  # a truck reaches 0.43 m from its rear axle
+    return nearest
+
+
+@pytest.mark.parametrize("yaw", YAWS)
+@pytest.mark.parametrize("at", [(43.0, 3.0), (43.0, 43.0), (-43.0, 43.0)])
+def test_nobody_reaches_the_boundary_from_anywhere_beside_it(at, yaw):
+    assert nearest_to_the_boundary(at, yaw) > 1.5
+
+
+@pytest.mark.parametrize("yaw", YAWS)
+@pytest.mark.parametrize(
+    "at",
+    [(-41.5, -43.9), (41.0, 41.0), (-41.5, 43.5), (39.5, 39.5), (-43.9, -39.5), (45.0, -45.0)],
+)
+def test_nobody_touches_the_boundary_from_deeper_in_a_corner(at, yaw):
+    assert nearest_to_the_boundary(at, yaw) > 0.6  # a truck reaches 0.43 m from its rear axle
+
+
+@pytest.mark.parametrize("at", [(41.0, 41.0), (-41.5, 41.5), (42.0, -40.5), (-43.0, 45.0)])
+def test_who_turns_away_from_a_corner_does_so_until_clear_of_it(at):
+    boundary = Boundary(1, CONFIG)
+    pose, was = np.array([[*at, np.arctan2(at[1], at[0])]]), []
+    for _ in range(600):
+        command = boundary.command(pose)
+        was.append(boundary.active[0])
+        pose = drive(pose, np.where(boundary.active[:, None], command, [[1.0, 0.0]]))
+    assert np.count_nonzero(np.diff(np.array(was).astype(int)) > 0) <= 1  # begun once
+    left = was.index(False, was.index(True))
+    assert not any(was[left : left + 100])
 
 
 def test_the_potential_field_turns_the_short_way():
