@@ -87,6 +87,28 @@ class Boundary:
         forward = np.where(turn < 0, right, left)
         return np.column_stack([forward, c.top_turn * turn])
 
+    def bound(self, pose: Array, command: Array, wanted: Array, roams: NDArray[np.bool_]) -> Array:
+        """Commands (n, 2) that keep off the boundary whatever others made of them.
+
+        Args:
+            pose: (n, 3).
+            command: After everything that changed it (n, 2).
+            wanted: Of :meth:`command` at this step (n, 2).
+            roams: Who heeds the boundary (n,).
+        """
+        c = self._config
+        x0, y0, x1, y1 = c.bounds
+        x, y, yaw = pose.T
+        walls = np.column_stack([x1 - x, y1 - y, x - x0, y - y0])
+        left, right = self._speeds(walls, yaw, 1.0), self._speeds(walls, yaw, -1.0)
+        forward, turn = command.T
+        limit = np.where(turn < 0, right, np.where(turn > 0, left, np.maximum(left, right)))
+        heeds = roams & self.active & np.isfinite(x)
+        # where no speed leaves the margin, nobody is given way to
+        turn = np.where(heeds & (limit <= c.least_speed), wanted[:, 1], turn)
+        forward = np.where(heeds, np.minimum(forward, limit), forward)
+        return np.column_stack([forward, turn])
+
     def _speeds(self, walls: Array, yaw: Array, sense: float) -> Array:
         """Speeds (n,) at which a turn at ``top_turn`` stays off the walls (n, 4), at most search's.
 

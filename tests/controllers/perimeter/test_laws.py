@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from controllers.perimeter import PerimeterConfig
-from controllers.perimeter.approach import acquire, approach, edge_errors
+from controllers.perimeter.approach import acquire, approach, edge_errors, onto
 from controllers.perimeter.avoidance import Avoidance, Neighbours
 from controllers.perimeter.config import even_factor, tracked_radius
 from controllers.perimeter.estimate import TrackedCircles, circle
 from controllers.perimeter.percepts import foot_of_edge, nearest_of_kind
 from controllers.perimeter.spiral import Boundary, Spiral
-from controllers.perimeter.states import MOVING, TRACKING
+from controllers.perimeter.states import ACQUIRE, MOVING, TRACKING
 from controllers.perimeter.tracking import Zigzag, bang_bang, spacing
 from controllers.perimeter.vision import inside, red_mask
 from mjmr.errors import InvalidInputError, UnknownNameError
@@ -204,7 +204,9 @@ def test_two_who_meet_head_on_do_not_touch(offset):
     speed = np.ones(2)
     for _ in range(400):
         wanted = np.array([[1.0, 0.0], [1.0, 0.0]])
-        command = avoidance.apply(wanted, state, neighbours(pose, state, speed), nobody)
+        command = avoidance.apply(
+            wanted, np.zeros(2), state, neighbours(pose, state, speed), nobody
+        )
         speed = speed + np.clip(command[:, 0] - speed, -0.1, 0.1)  # as a truck brakes
         turn = np.clip(command[:, 1], -1.7 * speed, 1.7 * speed)
         pose = drive(pose, np.column_stack([speed, turn]))
@@ -220,7 +222,7 @@ def test_on_the_perimeter_one_waits_for_who_cuts_in():
     state = np.array([TRACKING, MOVING])
     wanted = np.array([[0.4, 0.1], [1.0, 0.0]])
     nobody = np.full((2, 2), np.nan)
-    command = avoidance.apply(wanted, state, neighbours(pose, state), nobody)
+    command = avoidance.apply(wanted, np.zeros(2), state, neighbours(pose, state), nobody)
     assert command[0].tolist() == [0.0, 0.0]
     assert command[1].tolist() == [0.3, -0.3]
 
@@ -230,11 +232,33 @@ def test_somebody_seen_whom_no_radio_tells_of_is_waited_for():
     pose, state = np.zeros((1, 3)), np.array([MOVING])
     alone = neighbours(pose, state)
     body = np.array([[2.5, 0.0]])
-    command = avoidance.apply(np.array([[1.0, 0.0]]), state, alone, body)
+    command = avoidance.apply(np.array([[1.0, 0.0]]), np.zeros(1), state, alone, body)
     assert command[0, 0] == 0.0
     for _ in range(60):
-        command = avoidance.apply(np.array([[1.0, 0.0]]), state, alone, body)
-    assert command[0].tolist() == [0.3, -0.3]  # not for ever
+        command = avoidance.apply(np.array([[1.0, 0.0]]), np.zeros(1), state, alone, body)
+    assert command[0].tolist() == [0.2, -0.3]  # not for ever, and sharply to the right
+
+
+@pytest.mark.parametrize("turn", [-1.2, -0.6, 0.0, 0.6, 1.2])
+@pytest.mark.parametrize("angle", [-0.5, -0.4, -0.3])
+def test_who_acquires_gets_past_one_who_stands_on_the_perimeter_for_ever(angle, turn):
+    avoidance, state = Avoidance(2, CONFIG), np.array([ACQUIRE, TRACKING])
+    way, least = tracked_radius(10.0), np.inf
+    at = 13.0 * np.array([np.cos(angle), np.sin(angle)])
+    pose = np.array([[*at, angle + np.pi + turn], [way, 0.0, np.pi / 2]])
+    nobody, speed = np.full((2, 2), np.nan), np.zeros(2)
+    for _ in range(900):
+        wanted = acquire(edge_of(pose, 10.0), CONFIG)
+        command = avoidance.apply(
+            wanted, onto(edge_of(pose, 10.0), CONFIG), state, neighbours(pose, state, speed), nobody
+        )
+        command[1] = 0.0
+        speed = command[:, 0]
+        pose = drive(pose, command)
+        least = min(least, np.hypot(*(pose[0, :2] - pose[1, :2])))
+    assert least > 2.0
+    # nothing keeps it from the edge any more
+    assert edge_errors(edge_of(pose, 10.0), CONFIG)[0][0] == pytest.approx(0.0, abs=0.15)
 
 
 def test_circles_are_found_from_tracks():
