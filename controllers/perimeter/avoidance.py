@@ -64,21 +64,22 @@ class Avoidance:
         self._clear = np.full(n, np.inf)  # s, since somebody ahead was last in the way
 
     def apply(
-        self, command: Array, heading: Array, state: NDArray[np.int64], near: Neighbours,
-        body: Array,
+        self, command: Array, heading: Array, edge: Array, state: NDArray[np.int64],
+        near: Neighbours, body: Array,
     ) -> Array:  # fmt: skip
         """Commands (n, 2) as they may be carried out.
 
         Args:
             command: As wanted (n, 2).
             heading: To which it turns, from its own (n,) [rad]; 0 where there is no such.
+            edge: Bearing of the perimeter's nearest point (n,) [rad], NaN: none in range.
             state: Of each robot (n,).
             near: Whom it knows of.
             body: Nearest robot seen (n, 2) [m], own frame; one that is not known by radio counts as
                 somebody ahead whose rank is unknown.
         """
         found = self._rule(command, state, near)
-        return self._guard(found, heading, state, near, body)
+        return self._guard(found, heading, edge, state, near, body)
 
     def _rule(self, command: Array, state: NDArray[np.int64], near: Neighbours) -> Array:
         """Rule 3, while searching and approaching.
@@ -102,8 +103,8 @@ class Avoidance:
         return np.column_stack([command[:, 0], np.where(roams, turn, command[:, 1])])
 
     def _guard(
-        self, command: Array, heading: Array, state: NDArray[np.int64], near: Neighbours,
-        body: Array,
+        self, command: Array, heading: Array, edge: Array, state: NDArray[np.int64],
+        near: Neighbours, body: Array,
     ) -> Array:  # fmt: skip
         c, n = self._config, len(state)
         rank = np.arange(n)
@@ -130,19 +131,20 @@ class Avoidance:
         forward, turn = command.T
         forward = np.where(stopped, 0.0, np.where(passes, np.minimum(forward, c.pass_speed),
                                                   forward))  # fmt: skip
-        # to the right, unless the other is there already
+        # to the right, unless the other is there already, or the perimeter
         nearest = np.argmin(np.where(ahead, near.apart, np.inf), axis=1)
         left = (near.bearing[rank, nearest] < -_ASIDE) & (state < ACQUIRE)
+        left |= (edge < 0) & (state >= ACQUIRE)
         turn = np.where(stopped, 0.0, np.where(passes, np.where(left, 1.0, -1.0) * c.top_turn,
                                                turn))  # fmt: skip
         distances = np.column_stack([near.apart, apart + c.reach])
         bearings = np.column_stack([near.bearing, bearing])
         command = np.column_stack([forward, turn])
-        return self._go_round(command, heading, state, distances, bearings)
+        return self._go_round(command, heading, edge, state, distances, bearings)
 
     def _go_round(
-        self, command: Array, heading: Array, state: NDArray[np.int64], apart: Array,
-        bearing: Array,
+        self, command: Array, heading: Array, edge: Array, state: NDArray[np.int64],
+        apart: Array, bearing: Array,
     ) -> Array:  # fmt: skip
         """Who has waited long enough for somebody who stands goes round him at a distance (ours).
 
@@ -153,6 +155,7 @@ class Avoidance:
         Args:
             command: As wanted (n, 2).
             heading: To which it would turn (n,) [rad].
+            edge: Bearing of the perimeter (n,) [rad], NaN: none in range.
             state: Of each robot (n,).
             apart: From others (n, k) [m], NaN: not known.
             bearing: Of them (n, k) [rad].
@@ -164,10 +167,12 @@ class Avoidance:
             close = (apart < c.close) & (np.abs(bearing) < np.pi / 2)
         nearest = np.argmin(np.where(beside, apart, np.inf), axis=1)
         distance, way = apart[rows, nearest], bearing[rows, nearest]
-        # beside the perimeter, which is on the left, always to the right
-        side = np.where((way >= 0.0) | (state >= ACQUIRE), 1.0, -1.0)
+        side = np.where(way >= 0.0, 1.0, -1.0)
         begins = (self.waiting > c.patience) & (self.side == 0)
         self.side = np.where(begins, side, self.side)
+        # before the perimeter always away from it, which is to the right if it is on the left
+        before = (self.side != 0) & (np.abs(edge) < np.pi / 2)
+        self.side = np.where(before, np.where(edge >= 0.0, 1.0, -1.0), self.side)
         self.side = np.where((state != TRACKING) & beside.any(axis=1), self.side, 0.0)
         # along the circle, and back to it
         error = wrap_angle(way - self.side * (np.pi / 2 - np.arctan(distance - c.round_radius)))

@@ -85,7 +85,8 @@ class PerimeterTeam:
         command = np.where(tracks[:, None], self._track(now, near, error, tracks), command)
         heading = np.where(state == MOVING, way_off(now.pose, self._goal), 0.0)
         heading = np.nan_to_num(np.where(state == ACQUIRE, onto(now.edge, c), heading))
-        command = self._avoidance.apply(command, heading, state, near, now.body)
+        side = np.arctan2(now.edge[:, 1], now.edge[:, 0])
+        command = self._avoidance.apply(command, heading, side, state, near, now.body)
         command = self._boundary.bound(now.pose, command, wall, roams)
         # who does not know where it is, or tracks without a sensor, stands still
         blind = ~np.isfinite(now.pose).all(axis=1) | ((state >= ACQUIRE) & np.isnan(now.inside))

@@ -17,6 +17,7 @@ from mjmr.errors import InvalidInputError, UnknownNameError
 
 BOUNDS = (-50.0, -50.0, 50.0, 50.0)
 CONFIG = PerimeterConfig(bounds=BOUNDS)
+NO_EDGE = np.full(2, np.nan)
 
 
 def drive(pose, command, period=0.1):
@@ -196,6 +197,16 @@ def neighbours(pose, state, speed=None):
     return Neighbours(pose, heard, ~np.eye(n, dtype=bool))
 
 
+@pytest.mark.parametrize("way", [-1, 1])
+def test_who_passes_another_turns_away_from_the_perimeter(way):
+    avoidance, nobody = Avoidance(2, CONFIG), np.full((2, 2), np.nan)
+    pose, state = np.array([[0.0, 0.0, 0.0], [3.0, 0.0, np.pi]]), np.array([ACQUIRE, TRACKING])
+    known, edge = neighbours(pose, state), np.array([way * np.pi / 2, np.nan])
+    command = avoidance.apply(np.full((2, 2), 0.3), np.zeros(2), edge, state, known, nobody)
+    assert command[0].tolist() == [0.3, -way * 0.3]
+    assert command[1].tolist() == [0.0, 0.0]
+
+
 @pytest.mark.parametrize("offset", [-1.8, -0.8, 0.0, 0.5, 1.8])
 def test_two_who_meet_head_on_do_not_touch(offset):
     avoidance = Avoidance(2, CONFIG)
@@ -205,7 +216,7 @@ def test_two_who_meet_head_on_do_not_touch(offset):
     for _ in range(400):
         wanted = np.array([[1.0, 0.0], [1.0, 0.0]])
         command = avoidance.apply(
-            wanted, np.zeros(2), state, neighbours(pose, state, speed), nobody
+            wanted, np.zeros(2), NO_EDGE, state, neighbours(pose, state, speed), nobody
         )
         speed = speed + np.clip(command[:, 0] - speed, -0.1, 0.1)  # as a truck brakes
         turn = np.clip(command[:, 1], -1.7 * speed, 1.7 * speed)
@@ -222,7 +233,7 @@ def test_on_the_perimeter_one_waits_for_who_cuts_in():
     state = np.array([TRACKING, MOVING])
     wanted = np.array([[0.4, 0.1], [1.0, 0.0]])
     nobody = np.full((2, 2), np.nan)
-    command = avoidance.apply(wanted, np.zeros(2), state, neighbours(pose, state), nobody)
+    command = avoidance.apply(wanted, np.zeros(2), NO_EDGE, state, neighbours(pose, state), nobody)
     assert command[0].tolist() == [0.0, 0.0]
     assert command[1].tolist() == [0.3, -0.3]
 
@@ -232,31 +243,35 @@ def test_somebody_seen_whom_no_radio_tells_of_is_waited_for():
     pose, state = np.zeros((1, 3)), np.array([MOVING])
     alone = neighbours(pose, state)
     body = np.array([[2.5, 0.0]])
-    command = avoidance.apply(np.array([[1.0, 0.0]]), np.zeros(1), state, alone, body)
+    command = avoidance.apply(np.array([[1.0, 0.0]]), np.zeros(1), NO_EDGE[:1], state, alone, body)
     assert command[0, 0] == 0.0
     for _ in range(60):
-        command = avoidance.apply(np.array([[1.0, 0.0]]), np.zeros(1), state, alone, body)
+        command = avoidance.apply(
+            np.array([[1.0, 0.0]]), np.zeros(1), NO_EDGE[:1], state, alone, body
+        )
     assert command[0].tolist() == [0.2, -0.3]  # not for ever, and sharply to the right
 
 
 @pytest.mark.parametrize("turn", [-1.2, -0.6, 0.0, 0.6, 1.2])
-@pytest.mark.parametrize("angle", [-0.5, -0.4, -0.3])
+@pytest.mark.parametrize("angle", [-0.5, -0.4, -0.3, 0.5])
 def test_who_acquires_gets_past_one_who_stands_on_the_perimeter_for_ever(angle, turn):
     avoidance, state = Avoidance(2, CONFIG), np.array([ACQUIRE, TRACKING])
-    way, least = tracked_radius(10.0), np.inf
+    way, least, deepest = tracked_radius(10.0), np.inf, -np.inf
     at = 13.0 * np.array([np.cos(angle), np.sin(angle)])
     pose = np.array([[*at, angle + np.pi + turn], [way, 0.0, np.pi / 2]])
     nobody, speed = np.full((2, 2), np.nan), np.zeros(2)
     for _ in range(900):
-        wanted = acquire(edge_of(pose, 10.0), CONFIG)
-        command = avoidance.apply(
-            wanted, onto(edge_of(pose, 10.0), CONFIG), state, neighbours(pose, state, speed), nobody
-        )
+        edge = edge_of(pose, 10.0)
+        known, ways = neighbours(pose, state, speed), np.arctan2(edge[:, 1], edge[:, 0])
+        wanted, heading = acquire(edge, CONFIG), onto(edge, CONFIG)
+        command = avoidance.apply(wanted, heading, ways, state, known, nobody)
         command[1] = 0.0
         speed = command[:, 0]
         pose = drive(pose, command)
         least = min(least, np.hypot(*(pose[0, :2] - pose[1, :2])))
+        deepest = max(deepest, 10.0 - np.hypot(*pose[0, :2]))
     assert least > 2.0
+    assert deepest < -0.43
     # nothing keeps it from the edge any more
     assert edge_errors(edge_of(pose, 10.0), CONFIG)[0][0] == pytest.approx(0.0, abs=0.15)
 
