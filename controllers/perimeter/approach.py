@@ -53,9 +53,15 @@ def onto(edge: Array, config: PerimeterConfig) -> Array:
 def acquire(edge: Array, config: PerimeterConfig) -> Array:
     """(forward, turn) (n, 2) onto the perimeter: to its tangent plus atan(error).
 
-    Head on, bang-bang needs 4 m of radius and drives up to 9 m into the disc (our check).
+    Head on, bang-bang needs 4 m of radius and drives up to 9 m into the disc (our check). Who comes
+    with the perimeter on the right turns through it: slower where the turn would reach it.
     """
     wanted = onto(edge, config)
     turn = np.clip(wanted, -config.top_turn, config.top_turn)
-    forward = np.full(len(edge), config.track_speed)
+    # a turn of radius r comes r (1 + sin(sense beta)) nearer to what is at bearing beta
+    beta = np.sign(turn) * np.arctan2(edge[:, 1], edge[:, 0])
+    nearer = np.where(beta < -np.pi / 2, 0.0, 1.0 + np.sin(beta))
+    room = config.top_turn * (np.hypot(edge[:, 0], edge[:, 1]) - config.look_left)
+    slow = np.clip(room / np.maximum(nearer, 1e-9), config.least_speed, config.track_speed)
+    forward = np.where(np.abs(wanted) > config.top_turn, slow, config.track_speed)
     return np.column_stack([forward, np.nan_to_num(turn)])

@@ -119,6 +119,17 @@ def test_acquire_ends_on_the_edge_anticlockwise_and_never_gets_inside(turn):
     assert least > 0.4
 
 
+@pytest.mark.parametrize("heading", np.linspace(-np.pi, np.pi, 25))
+@pytest.mark.parametrize("off", [1.9, 2.3, 3.0])
+def test_who_acquires_touches_nothing_from_whatever_heading(off, heading):
+    pose, least = np.array([[10.0 + off, 0.0, heading]]), np.inf
+    for _ in range(600):
+        pose = drive(pose, acquire(edge_of(pose, 10.0), CONFIG))
+        least = min(least, np.hypot(*pose[0, :2]) - 10.0)
+    assert least > 0.43  # what a truck reaches from its rear axle
+    assert abs(edge_errors(edge_of(pose, 10.0), CONFIG)[0][0]) < 0.1
+
+
 @pytest.mark.parametrize(("radius", "holds"), [(10.0, True), (20.0, True), (3.0, False)])
 def test_bang_bang_follows_discs_above_four_metres(radius, holds):
     way = tracked_radius(radius)
