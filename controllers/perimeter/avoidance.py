@@ -177,13 +177,18 @@ class Avoidance:
         # along the circle, and back to it
         error = wrap_angle(way - self.side * (np.pi / 2 - np.arctan(distance - c.round_radius)))
         turn = np.clip(np.nan_to_num(error), -c.top_turn, c.top_turn)
+        # who stands ahead, but not where one turns to, does not stop one either
+        turns = (self.side == 0) & (self.waiting > c.patience) & (state != TRACKING)
+        error = np.where(turns, heading, error)
+        turn = np.where(turns, np.clip(heading, -c.top_turn, c.top_turn), turn)
         # whom it would touch in turning it lets go first
+        lean = np.where(turns, np.where(heading > 0, -1.0, 1.0), self.side)
         with np.errstate(invalid="ignore"):
-            turned = bearing * np.where(self.side == 0, 1.0, self.side)[:, None]
+            turned = bearing * lean[:, None]
             held = (close & (turned < _ASIDE)) | ((apart < c.touching) & close)
         forward = np.where(np.abs(error) > _SHARP, c.least_speed, c.pass_speed)
         forward = np.where(held.any(axis=1), 0.0, forward)
-        goes = self.side != 0
+        goes = (self.side != 0) | turns
         return np.where(goes[:, None], np.column_stack([forward, turn]), command)
 
     def _somebody(self, near: Neighbours, body: Array) -> tuple[Array, Array]:

@@ -208,6 +208,17 @@ def neighbours(pose, state, speed=None):
     return Neighbours(pose, heard, ~np.eye(n, dtype=bool))
 
 
+@pytest.mark.parametrize("heading", [-2.0, 2.0])
+def test_who_stands_ahead_does_not_stop_one_for_ever_who_turns_elsewhere(heading):
+    avoidance, nobody = Avoidance(2, CONFIG), np.full((2, 2), np.nan)
+    pose, state = np.array([[0.0, 0.0, 0.0], [2.5, 0.0, np.pi / 2]]), np.array([ACQUIRE, TRACKING])
+    known, wanted = neighbours(pose, state), np.array([[0.4, np.sign(heading) * 0.3], [0.0, 0.0]])
+    ways = np.array([heading, 0.0])
+    told = [avoidance.apply(wanted, ways, NO_EDGE, state, known, nobody)[0] for _ in range(60)]
+    assert told[0].tolist() == [0.0, 0.0]
+    assert told[-1].tolist() == [0.2, np.sign(heading) * 0.3]
+
+
 @pytest.mark.parametrize("way", [-1, 1])
 def test_who_passes_another_turns_away_from_the_perimeter(way):
     avoidance, nobody = Avoidance(2, CONFIG), np.full((2, 2), np.nan)
