@@ -7,8 +7,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from controllers.perception.hues import HUES, hue_mask
+
 Array = NDArray[np.float64]
-_HUES = 180  # OpenCV's hue in 8 bits counts 2 degrees
 _CROSS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 _SQUARE = np.ones((2, 2), dtype=np.uint8)
 _WIDEST = 14  # a hue window reaches this far to either side at most
@@ -49,7 +50,7 @@ class BlobFinder:
         hsv = cv2.cvtColor(rgb, cv2.COLOR_RGB2HSV)[0]
         hue = hsv[:, 0] / 2
         # a window reaches half way to the next hue on either side
-        ahead = (hue - hue[:, None]) % _HUES
+        ahead = (hue - hue[:, None]) % HUES
         ahead[ahead == 0] = np.inf
         up = np.minimum(ahead.min(axis=1, initial=np.inf) / 2, _WIDEST)
         down = np.minimum(ahead.min(axis=0, initial=np.inf) / 2, _WIDEST)
@@ -108,11 +109,4 @@ class BlobFinder:
 
     def _mask(self, colour: int) -> NDArray[np.uint8]:
         low, high = int(self._low[colour]), int(self._high[colour])
-        least = (int(self._least[colour]), self._dark)
-        hsv = self._hsv
-        if low >= 0 and high < _HUES:
-            return cv2.inRange(hsv, (low, *least), (high, 255, 255))  # pyright: ignore
-        # red lies on both sides of hue 0
-        above = cv2.inRange(hsv, (low % _HUES, *least), (_HUES - 1, 255, 255))  # pyright: ignore
-        below = cv2.inRange(hsv, (0, *least), (high % _HUES, 255, 255))  # pyright: ignore
-        return cv2.bitwise_or(above, below)  # pyright: ignore[reportReturnType]
+        return hue_mask(self._hsv, low, high, int(self._least[colour]), self._dark)

@@ -15,6 +15,9 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 _MOVES = 0.05  # m/s
 _ASIDE = 0.35  # rad
+_SHARP = 0.5  # rad, off the way round, from which on one turns as sharply as one can
+_BEHIND = np.radians(110.0)  # off the heading, beyond which nobody is gone round
+_PASSED = np.radians(75.0)  # off where one turns to, beyond which nobody is in the way
 
 
 class Neighbours:
@@ -50,27 +53,33 @@ class Avoidance:
 
     Attributes:
         waiting: For how long each robot has been stopped by somebody ahead who stands (n,) [s].
+        side: On which side whom a robot goes round is kept: +1 left, -1 right, 0: it does not (n,).
     """
 
     def __init__(self, n: int, config: PerimeterConfig):
         """Args: n: How many robots. config: With the distances."""
         self._config = config
         self.waiting = np.zeros(n)
+        self.side = np.zeros(n)
         self._clear = np.full(n, np.inf)  # s, since somebody ahead was last in the way
 
-    def apply(self, command: Array, state: NDArray[np.int64], near: Neighbours, body: Array
-              ) -> Array:  # fmt: skip
+    def apply(
+        self, command: Array, heading: Array, edge: Array, state: NDArray[np.int64],
+        near: Neighbours, body: Array,
+    ) -> Array:  # fmt: skip
         """Commands (n, 2) as they may be carried out.
 
         Args:
             command: As wanted (n, 2).
+            heading: To which it turns, from its own (n,) [rad]; 0 where there is no such.
+            edge: Bearing of the perimeter's nearest point (n,) [rad], NaN: none in range.
             state: Of each robot (n,).
             near: Whom it knows of.
             body: Nearest robot seen (n, 2) [m], own frame; one that is not known by radio counts as
                 somebody ahead whose rank is unknown.
         """
         found = self._rule(command, state, near)
-        return self._guard(found, state, near, body)
+        return self._guard(found, heading, edge, state, near, body)
 
     def _rule(self, command: Array, state: NDArray[np.int64], near: Neighbours) -> Array:
         """Rule 3, while searching and approaching.
@@ -88,14 +97,15 @@ class Avoidance:
         aside = np.where(near.bearing >= 0, -1.0, 1.0)
         nearest = np.argmin(np.where(behind, near.apart, np.inf), axis=1)
         away = aside[np.arange(len(state)), nearest]
-        roams = state < 2
+        roams = state < ACQUIRE
         turn = np.where(behind.any(axis=1), away * c.top_turn, command[:, 1])
         turn = np.where(right.any(axis=1), -c.top_turn, turn)
         return np.column_stack([command[:, 0], np.where(roams, turn, command[:, 1])])
 
     def _guard(
-        self, command: Array, state: NDArray[np.int64], near: Neighbours, body: Array
-    ) -> Array:
+        self, command: Array, heading: Array, edge: Array, state: NDArray[np.int64],
+        near: Neighbours, body: Array,
+    ) -> Array:  # fmt: skip
         c, n = self._config, len(state)
         rank = np.arange(n)
         with np.errstate(invalid="ignore"):
@@ -106,7 +116,9 @@ class Avoidance:
         tracks, other_tracks = (state == TRACKING)[:, None], near.state == TRACKING
         goes_first = np.where(tracks == other_tracks, rank[:, None] < rank[None], ~tracks)
         stopped_by = ahead & ~(mutual & goes_first)
-        unknown = self._unknown(near, body)
+        apart, bearing = self._somebody(near, body)
+        with np.errstate(invalid="ignore"):
+            unknown = (apart < c.guard_radius - c.reach) & (np.abs(bearing) < c.guard_angle)
         blocked = stopped_by.any(axis=1) | unknown
         # for a moment longer: stop and go at the limit of what is ahead creeps without turning
         self._clear = np.where(blocked, 0.0, self._clear + c.period)
@@ -116,43 +128,74 @@ class Avoidance:
         stands = (stopped_by & ~(near.speed > _MOVES)).any(axis=1) | unknown
         waited = self.waiting + np.where(stands, c.period, 0.0)
         self.waiting = np.where(stopped, waited, 0.0)
-        # who has waited long enough goes round; on the perimeter one waits
-        patient = self.waiting < c.patience
-        around = stopped & ~patient & (state != TRACKING) & ~self._too_near(near, body)
-        bearing = self._nearest_bearing(near, body, ahead, unknown)
-        # beside the perimeter, which is on the left, always to the right
-        away = np.where((bearing >= 0.0) | (state >= ACQUIRE), -c.top_turn, c.top_turn)
         forward, turn = command.T
         forward = np.where(stopped, 0.0, np.where(passes, np.minimum(forward, c.pass_speed),
                                                   forward))  # fmt: skip
-        # to the right, unless the other is there already
-        left = (bearing < -_ASIDE) & (state < ACQUIRE)
-        aside = np.where(left, c.top_turn, -c.top_turn)
-        turn = np.where(stopped, 0.0, np.where(passes, aside, turn))
-        forward = np.where(around, c.pass_speed, forward)
-        turn = np.where(around, away, turn)
-        return np.column_stack([forward, turn])
+        # to the right, unless the other is there already, or the perimeter
+        nearest = np.argmin(np.where(ahead, near.apart, np.inf), axis=1)
+        left = (near.bearing[rank, nearest] < -_ASIDE) & (state < ACQUIRE)
+        left |= (edge < 0) & (state >= ACQUIRE)
+        turn = np.where(stopped, 0.0, np.where(passes, np.where(left, 1.0, -1.0) * c.top_turn,
+                                               turn))  # fmt: skip
+        distances = np.column_stack([near.apart, apart + c.reach])
+        bearings = np.column_stack([near.bearing, bearing])
+        command = np.column_stack([forward, turn])
+        return self._go_round(command, heading, edge, state, distances, bearings)
 
-    def _unknown(self, near: Neighbours, body: Array) -> Flags:
-        """Whether somebody is seen ahead whom the radio does not tell of (n,)."""
-        c = self._config
+    def _go_round(
+        self, command: Array, heading: Array, edge: Array, state: NDArray[np.int64],
+        apart: Array, bearing: Array,
+    ) -> Array:  # fmt: skip
+        """Who has waited long enough for somebody who stands goes round him at a distance (ours).
+
+        It keeps to a circle of ``round_radius`` around the nearest until nobody in ``guard_radius``
+        is in the way to where it turns: a turn that ends when he is no longer ahead leads back to
+        him. On the perimeter one waits.
+
+        Args:
+            command: As wanted (n, 2).
+            heading: To which it would turn (n,) [rad].
+            edge: Bearing of the perimeter (n,) [rad], NaN: none in range.
+            state: Of each robot (n,).
+            apart: From others (n, k) [m], NaN: not known.
+            bearing: Of them (n, k) [rad].
+        """
+        c, rows = self._config, np.arange(len(state))
+        with np.errstate(invalid="ignore"):
+            beside = (apart < c.guard_radius) & (np.abs(bearing) < _BEHIND)
+            beside &= np.abs(wrap_angle(bearing - heading[:, None])) < _PASSED
+            close = (apart < c.close) & (np.abs(bearing) < np.pi / 2)
+        nearest = np.argmin(np.where(beside, apart, np.inf), axis=1)
+        distance, way = apart[rows, nearest], bearing[rows, nearest]
+        side = np.where(way >= 0.0, 1.0, -1.0)
+        begins = (self.waiting > c.patience) & (self.side == 0)
+        self.side = np.where(begins, side, self.side)
+        # before the perimeter always away from it, which is to the right if it is on the left
+        before = (self.side != 0) & (np.abs(edge) < np.pi / 2)
+        self.side = np.where(before, np.where(edge >= 0.0, 1.0, -1.0), self.side)
+        self.side = np.where((state != TRACKING) & beside.any(axis=1), self.side, 0.0)
+        # along the circle, and back to it
+        error = wrap_angle(way - self.side * (np.pi / 2 - np.arctan(distance - c.round_radius)))
+        turn = np.clip(np.nan_to_num(error), -c.top_turn, c.top_turn)
+        # who stands ahead, but not where one turns to, does not stop one either
+        turns = (self.side == 0) & (self.waiting > c.patience) & (state != TRACKING)
+        error = np.where(turns, heading, error)
+        turn = np.where(turns, np.clip(heading, -c.top_turn, c.top_turn), turn)
+        # whom it would touch in turning it lets go first
+        lean = np.where(turns, np.where(heading > 0, -1.0, 1.0), self.side)
+        with np.errstate(invalid="ignore"):
+            turned = bearing * lean[:, None]
+            held = (close & (turned < _ASIDE)) | ((apart < c.touching) & close)
+        forward = np.where(np.abs(error) > _SHARP, c.least_speed, c.pass_speed)
+        forward = np.where(held.any(axis=1), 0.0, forward)
+        goes = (self.side != 0) | turns
+        return np.where(goes[:, None], np.column_stack([forward, turn]), command)
+
+    def _somebody(self, near: Neighbours, body: Array) -> tuple[Array, Array]:
+        """Distance [m] and bearing (n,) of who is seen but not told of by radio; NaN: nobody."""
         apart, bearing = np.hypot(*body.T), np.arctan2(body[:, 1], body[:, 0])
         x = near.apart * np.cos(near.bearing) - body[:, :1]
         y = near.apart * np.sin(near.bearing) - body[:, 1:]
         with np.errstate(invalid="ignore"):
-            told = (np.hypot(x, y) < 1.5).any(axis=1)
-            # to the surface, not to the middle
-            return (apart < c.guard_radius - 0.4) & (np.abs(bearing) < c.guard_angle) & ~told
-
-    def _too_near(self, near: Neighbours, body: Array) -> Flags:
-        with np.errstate(invalid="ignore"):
-            told = (near.apart < 1.3) & (np.abs(near.bearing) < np.pi / 2)
-            seen = (np.hypot(*body.T) < 0.9) & (body[:, 0] > 0)
-        return told.any(axis=1) | seen
-
-    def _nearest_bearing(
-        self, near: Neighbours, body: Array, ahead: Flags, unknown: Flags
-    ) -> Array:
-        nearest = np.argmin(np.where(ahead, near.apart, np.inf), axis=1)
-        told = near.bearing[np.arange(len(nearest)), nearest]
-        return np.where(unknown & ~ahead.any(axis=1), np.arctan2(body[:, 1], body[:, 0]), told)
+            told = (np.hypot(x, y) < self._config.same).any(axis=1)
+        return np.where(told, np.nan, apart), bearing

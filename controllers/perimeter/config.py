@@ -3,6 +3,9 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from mjmr.errors import InvalidInputError, UnknownNameError
 
 SPACINGS = ("repaired", "literal")
@@ -26,13 +29,21 @@ class PerimeterConfig:
         spiral_turn: a, with which a spiral begins [rad/s].
         spiral_decay: b, by which it unwinds [1/rad].
         wall_trigger: Distance to the boundary at which the robot turns inwards [m].
-        wall_release: Distance at which it searches on [m].
+        wall_release: Distance at which it searches on [m]; nearer to two walls is a corner.
+        corner_release: Distance to the farther wall at which a corner is left [m].
+        wall_margin: That a turn leaves to every wall, at a lower speed if it must be [m].
+        least_speed: Of that turn [m/s]; slower, the steering's lock allows no ``top_turn``.
         approach_gain: k of the potential field's heading law [1/s]: soft 0.3 / 2 pi, stiff 0.3.
         avoid_radius: Within which rule 3 holds [m].
         guard_radius: Within which somebody ahead is waited for [m].
         guard_angle: To each side, what counts as ahead [rad].
         pass_speed: At which one passes who waits [m/s].
         patience: For which one waits for somebody who does not move [s].
+        round_radius: Distance at which one goes round who does not move [m].
+        close: Within which nobody may be on the way of who goes round [m].
+        touching: Within which nobody may be before it at all [m].
+        same: From where the radio puts a robot, within which one that is seen is the same [m].
+        reach: From a robot's surface, which is seen, to its origin, which is told [m].
         hold: For which one goes on waiting when nobody is ahead any more [s].
         sense_range: D_sen, at which the perimeter is acquired [m].
         look_ahead: Of the sensor's spot before the rear axle [m].
@@ -48,6 +59,7 @@ class PerimeterConfig:
         resume_depth: Of the look-ahead point inside at which a stopped robot moves on [m].
         news_timeout: After which a told location that shows nothing is given up [s]; besides the
             way there at search speed.
+        news_age: Of news that nobody sets out for any more [s].
         forget_after: Age at which what was heard of a robot counts no more [s].
     """
 
@@ -61,12 +73,20 @@ class PerimeterConfig:
     spiral_decay: float = 0.1
     wall_trigger: float = 6.0
     wall_release: float = 8.0
+    corner_release: float = 10.0
+    wall_margin: float = 2.0
+    least_speed: float = 0.2
     approach_gain: float = 0.3 / (2.0 * math.pi)
     avoid_radius: float = 2.5
     guard_radius: float = 3.5
     guard_angle: float = math.radians(60.0)
     pass_speed: float = 0.3
     patience: float = 4.0
+    round_radius: float = 2.2
+    close: float = 1.3
+    touching: float = 0.9
+    same: float = 1.5
+    reach: float = 0.4
     hold: float = 1.0
     sense_range: float = 3.0
     look_ahead: float = 0.5
@@ -81,6 +101,7 @@ class PerimeterConfig:
     spacing: str = "repaired"
     resume_depth: float = 0.15
     news_timeout: float = 60.0
+    news_age: float = 120.0
     forget_after: float = 1.0
 
     def __post_init__(self):
@@ -122,4 +143,9 @@ def tracked_radius(radius: float, ahead: float = 0.5, left: float = 0.6) -> floa
 
 def even_factor(n: int) -> float:
     """Share of the even chord at which n robots end evenly and stopped (our check)."""
-    return 1.0 - 0.05 / (n - 1) if n > 1 else 1.0
+    return float(even_factors(np.array(n)))
+
+
+def even_factors(n: NDArray[np.int64]) -> NDArray[np.float64]:
+    """The same of many numbers of robots at once, in n's shape."""
+    return np.where(n > 1, 1.0 - 0.05 / np.maximum(n - 1, 1), 1.0)

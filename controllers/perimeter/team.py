@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controllers.perimeter import percepts
-from controllers.perimeter.approach import acquire, approach, edge_errors
+from controllers.perimeter.approach import acquire, approach, edge_errors, onto, way_off
 from controllers.perimeter.avoidance import Avoidance, Neighbours
-from controllers.perimeter.config import PerimeterConfig, even_factor
+from controllers.perimeter.config import PerimeterConfig, even_factors
 from controllers.perimeter.estimate import TrackedCircles
 from controllers.perimeter.percepts import Percepts
 from controllers.perimeter.relay import Relay
@@ -83,7 +83,11 @@ class PerimeterTeam:
         command = np.where((self._boundary.active & roams)[:, None], wall, command)
         command = np.where((state == ACQUIRE)[:, None], acquire(now.edge, c), command)
         command = np.where(tracks[:, None], self._track(now, near, error, tracks), command)
-        command = self._avoidance.apply(command, state, near, now.body)
+        heading = np.where(state == MOVING, way_off(now.pose, self._goal), 0.0)
+        heading = np.nan_to_num(np.where(state == ACQUIRE, onto(now.edge, c), heading))
+        side = np.arctan2(now.edge[:, 1], now.edge[:, 0])
+        command = self._avoidance.apply(command, heading, side, state, near, now.body)
+        command = self._boundary.bound(now.pose, command, wall, roams)
         # who does not know where it is, or tracks without a sensor, stands still
         blind = ~np.isfinite(now.pose).all(axis=1) | ((state >= ACQUIRE) & np.isnan(now.inside))
         command[blind] = 0.0
@@ -103,10 +107,10 @@ class PerimeterTeam:
 
     def _track(self, now: Percepts, near: Neighbours, error: Array, tracks: Flags) -> Array:
         c = self.config
-        others = near.state == TRACKING
-        apart = np.where(others, near.apart, np.nan)
+        # who acquires is on the perimeter too: whoever stands before it must make room (ours)
+        apart = np.where(near.state >= ACQUIRE, near.apart, np.nan)
         if not c.desired:
-            self._estimate(now, others)
+            self._estimate(now, near.state == TRACKING)
         # whose circle is not known yet does not know that others are too near
         desired = np.where(np.isfinite(self.desired), self.desired, np.inf)
         wanted = np.where(np.isfinite(desired), desired, 1e3)
@@ -124,7 +128,7 @@ class PerimeterTeam:
         count = good.sum(axis=1)
         mean = np.where(good, radii, 0.0).sum(axis=1) / np.maximum(count, 1)
         n = others.sum(axis=1) + 1
-        share = np.array([self.config.factor or even_factor(int(k)) for k in n])
+        share = self.config.factor or even_factors(n)
         chord = 2.0 * mean * np.sin(np.pi / np.maximum(n, 2))
         self.desired = np.where(count > 0, share * chord, np.nan)
 
@@ -145,7 +149,7 @@ class PerimeterTeam:
             )
         cues = {
             "senses": senses,
-            "told": np.isfinite(self.relay.place[:, 0]) & ~lost_news(self.relay, time),
+            "told": np.isfinite(self.relay.place[:, 0]) & (time - self.relay.told_at <= c.news_age),
             "misled": time > self._deadline,
             "aligned": aligned & np.isfinite(now.inside),
             "astray": astray,
@@ -170,8 +174,3 @@ class PerimeterTeam:
         self.told |= sets_out & np.isnan(self.joined) & ~own
         joins = (self.state == TRACKING) & np.isnan(self.joined)
         self.joined = np.where(joins, time, self.joined)
-
-
-def lost_news(relay: Relay, time: float, age: float = 120.0) -> Flags:
-    """Whose news is older than ``age`` [s] (n,)."""
-    return time - relay.told_at > age

@@ -4,19 +4,18 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from controllers.perception.hues import hue_mask
 from mjmr.errors import InvalidInputError
 
 WINDOW = (16, 20)  # px, high and wide, in the middle of the picture
-HUE = (10, 170)  # of 180: red is below the first or above the second
-SATURATION, VALUE = 100, 40  # of 255, more than these
+HUE = 9  # of 180, red reaches so far to both sides of 0
+SATURATION, VALUE = 101, 41  # of 255, at least
 
 
 def red_mask(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """What of an RGB image (h, w, 3) is red: (h, w), 255 or 0."""
     hsv = cv2.cvtColor(image, cv2.COLOR_RGB2HSV)
-    low = cv2.inRange(hsv, (0, SATURATION + 1, VALUE + 1), (HUE[0] - 1, 255, 255))
-    high = cv2.inRange(hsv, (HUE[1] + 1, SATURATION + 1, VALUE + 1), (180, 255, 255))
-    return cv2.bitwise_or(low, high)  # pyright: ignore[reportReturnType]
+    return hue_mask(hsv, -HUE, HUE, SATURATION, VALUE)
 
 
 def window(shape: tuple[int, ...]) -> tuple[slice, slice]:

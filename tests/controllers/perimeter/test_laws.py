@@ -4,19 +4,20 @@ import numpy as np
 import pytest
 
 from controllers.perimeter import PerimeterConfig
-from controllers.perimeter.approach import acquire, approach, edge_errors
+from controllers.perimeter.approach import acquire, approach, edge_errors, onto
 from controllers.perimeter.avoidance import Avoidance, Neighbours
 from controllers.perimeter.config import even_factor, tracked_radius
 from controllers.perimeter.estimate import TrackedCircles, circle
 from controllers.perimeter.percepts import foot_of_edge, nearest_of_kind
 from controllers.perimeter.spiral import Boundary, Spiral
-from controllers.perimeter.states import MOVING, TRACKING
+from controllers.perimeter.states import ACQUIRE, MOVING, TRACKING
 from controllers.perimeter.tracking import Zigzag, bang_bang, spacing
 from controllers.perimeter.vision import inside, red_mask
 from mjmr.errors import InvalidInputError, UnknownNameError
 
 BOUNDS = (-50.0, -50.0, 50.0, 50.0)
 CONFIG = PerimeterConfig(bounds=BOUNDS)
+NO_EDGE = np.full(2, np.nan)
 
 
 def drive(pose, command, period=0.1):
@@ -43,17 +44,50 @@ def test_the_spiral_unwinds_and_goes_on_after_an_interruption():
     assert abs(spiral.command(0.0, everyone)[0, 0]) == 0.0  # v = v_s (1 - e^-t)
 
 
-@pytest.mark.parametrize("yaw", np.linspace(-np.pi, np.pi, 17))
-@pytest.mark.parametrize("at", [(43.0, 3.0), (39.5, 39.5), (-39.5, 43.5), (-43.9, -39.5)])
-def test_nobody_reaches_the_boundary_from_anywhere_beside_it(at, yaw):
+YAWS = np.linspace(-np.pi, np.pi, 17)
+PERIOD, LOCK, WHEELBASE = 0.1, np.radians(28.0), 0.31  # s, rad, m: of a truck
+
+
+def nearest_to_the_boundary(at, yaw):
+    """Distance of a truck that drives on, at full speed at first, and heeds the boundary [m]."""
     boundary = Boundary(1, CONFIG)
-    pose, nearest = np.array([[*at, yaw]]), np.inf
+    pose, nearest, speed = np.array([[*at, yaw]]), np.inf, 1.0
     for _ in range(600):
         command = boundary.command(pose)
-        straight = np.array([[1.0, 0.0]])
-        pose = drive(pose, np.where(boundary.active[:, None], command, straight))
+        wanted, turn = command[0] if boundary.active[0] else (1.0, 0.0)
+        speed += np.clip(wanted - speed, -PERIOD, PERIOD)  # brakes at 1 m/s^2
+        turn = np.clip(turn, -speed * np.tan(LOCK) / WHEELBASE, speed * np.tan(LOCK) / WHEELBASE)
+        pose = drive(pose, np.array([[speed, turn]]))
         nearest = min(nearest, 50.0 - np.abs(pose[0, :2]).max())
-    assert nearest > 1.2  # a truck reaches 0.43 m from its rear axle
+    return nearest
+
+
+@pytest.mark.parametrize("yaw", YAWS)
+@pytest.mark.parametrize("at", [(43.0, 3.0), (43.0, 43.0), (-43.0, 43.0)])
+def test_nobody_reaches_the_boundary_from_anywhere_beside_it(at, yaw):
+    assert nearest_to_the_boundary(at, yaw) > 1.5
+
+
+@pytest.mark.parametrize("yaw", YAWS)
+@pytest.mark.parametrize(
+    "at",
+    [(-41.5, -43.9), (41.0, 41.0), (-41.5, 43.5), (39.5, 39.5), (-43.9, -39.5), (45.0, -45.0)],
+)
+def test_nobody_touches_the_boundary_from_deeper_in_a_corner(at, yaw):
+    assert nearest_to_the_boundary(at, yaw) > 0.6  # a truck reaches 0.43 m from its rear axle
+
+
+@pytest.mark.parametrize("at", [(41.0, 41.0), (-41.5, 41.5), (42.0, -40.5), (-43.0, 45.0)])
+def test_who_turns_away_from_a_corner_does_so_until_clear_of_it(at):
+    boundary = Boundary(1, CONFIG)
+    pose, was = np.array([[*at, np.arctan2(at[1], at[0])]]), []
+    for _ in range(600):
+        command = boundary.command(pose)
+        was.append(boundary.active[0])
+        pose = drive(pose, np.where(boundary.active[:, None], command, [[1.0, 0.0]]))
+    assert np.count_nonzero(np.diff(np.array(was).astype(int)) > 0) <= 1  # begun once
+    left = was.index(False, was.index(True))
+    assert not any(was[left : left + 100])
 
 
 def test_the_potential_field_turns_the_short_way():
@@ -83,6 +117,17 @@ def test_acquire_ends_on_the_edge_anticlockwise_and_never_gets_inside(turn):
     assert abs(error[0]) < 0.1
     assert abs(tangent[0]) < 0.15
     assert least > 0.4
+
+
+@pytest.mark.parametrize("heading", np.linspace(-np.pi, np.pi, 25))
+@pytest.mark.parametrize("off", [1.9, 2.3, 3.0])
+def test_who_acquires_touches_nothing_from_whatever_heading(off, heading):
+    pose, least = np.array([[10.0 + off, 0.0, heading]]), np.inf
+    for _ in range(600):
+        pose = drive(pose, acquire(edge_of(pose, 10.0), CONFIG))
+        least = min(least, np.hypot(*pose[0, :2]) - 10.0)
+    assert least > 0.43  # what a truck reaches from its rear axle
+    assert abs(edge_errors(edge_of(pose, 10.0), CONFIG)[0][0]) < 0.1
 
 
 @pytest.mark.parametrize(("radius", "holds"), [(10.0, True), (20.0, True), (3.0, False)])
@@ -163,6 +208,27 @@ def neighbours(pose, state, speed=None):
     return Neighbours(pose, heard, ~np.eye(n, dtype=bool))
 
 
+@pytest.mark.parametrize("heading", [-2.0, 2.0])
+def test_who_stands_ahead_does_not_stop_one_for_ever_who_turns_elsewhere(heading):
+    avoidance, nobody = Avoidance(2, CONFIG), np.full((2, 2), np.nan)
+    pose, state = np.array([[0.0, 0.0, 0.0], [2.5, 0.0, np.pi / 2]]), np.array([ACQUIRE, TRACKING])
+    known, wanted = neighbours(pose, state), np.array([[0.4, np.sign(heading) * 0.3], [0.0, 0.0]])
+    ways = np.array([heading, 0.0])
+    told = [avoidance.apply(wanted, ways, NO_EDGE, state, known, nobody)[0] for _ in range(60)]
+    assert told[0].tolist() == [0.0, 0.0]
+    assert told[-1].tolist() == [0.2, np.sign(heading) * 0.3]
+
+
+@pytest.mark.parametrize("way", [-1, 1])
+def test_who_passes_another_turns_away_from_the_perimeter(way):
+    avoidance, nobody = Avoidance(2, CONFIG), np.full((2, 2), np.nan)
+    pose, state = np.array([[0.0, 0.0, 0.0], [3.0, 0.0, np.pi]]), np.array([ACQUIRE, TRACKING])
+    known, edge = neighbours(pose, state), np.array([way * np.pi / 2, np.nan])
+    command = avoidance.apply(np.full((2, 2), 0.3), np.zeros(2), edge, state, known, nobody)
+    assert command[0].tolist() == [0.3, -way * 0.3]
+    assert command[1].tolist() == [0.0, 0.0]
+
+
 @pytest.mark.parametrize("offset", [-1.8, -0.8, 0.0, 0.5, 1.8])
 def test_two_who_meet_head_on_do_not_touch(offset):
     avoidance = Avoidance(2, CONFIG)
@@ -171,7 +237,9 @@ def test_two_who_meet_head_on_do_not_touch(offset):
     speed = np.ones(2)
     for _ in range(400):
         wanted = np.array([[1.0, 0.0], [1.0, 0.0]])
-        command = avoidance.apply(wanted, state, neighbours(pose, state, speed), nobody)
+        command = avoidance.apply(
+            wanted, np.zeros(2), NO_EDGE, state, neighbours(pose, state, speed), nobody
+        )
         speed = speed + np.clip(command[:, 0] - speed, -0.1, 0.1)  # as a truck brakes
         turn = np.clip(command[:, 1], -1.7 * speed, 1.7 * speed)
         pose = drive(pose, np.column_stack([speed, turn]))
@@ -187,7 +255,7 @@ def test_on_the_perimeter_one_waits_for_who_cuts_in():
     state = np.array([TRACKING, MOVING])
     wanted = np.array([[0.4, 0.1], [1.0, 0.0]])
     nobody = np.full((2, 2), np.nan)
-    command = avoidance.apply(wanted, state, neighbours(pose, state), nobody)
+    command = avoidance.apply(wanted, np.zeros(2), NO_EDGE, state, neighbours(pose, state), nobody)
     assert command[0].tolist() == [0.0, 0.0]
     assert command[1].tolist() == [0.3, -0.3]
 
@@ -197,11 +265,37 @@ def test_somebody_seen_whom_no_radio_tells_of_is_waited_for():
     pose, state = np.zeros((1, 3)), np.array([MOVING])
     alone = neighbours(pose, state)
     body = np.array([[2.5, 0.0]])
-    command = avoidance.apply(np.array([[1.0, 0.0]]), state, alone, body)
+    command = avoidance.apply(np.array([[1.0, 0.0]]), np.zeros(1), NO_EDGE[:1], state, alone, body)
     assert command[0, 0] == 0.0
     for _ in range(60):
-        command = avoidance.apply(np.array([[1.0, 0.0]]), state, alone, body)
-    assert command[0].tolist() == [0.3, -0.3]  # not for ever
+        command = avoidance.apply(
+            np.array([[1.0, 0.0]]), np.zeros(1), NO_EDGE[:1], state, alone, body
+        )
+    assert command[0].tolist() == [0.2, -0.3]  # not for ever, and sharply to the right
+
+
+@pytest.mark.parametrize("turn", [-1.2, -0.6, 0.0, 0.6, 1.2])
+@pytest.mark.parametrize("angle", [-0.5, -0.4, -0.3, 0.5])
+def test_who_acquires_gets_past_one_who_stands_on_the_perimeter_for_ever(angle, turn):
+    avoidance, state = Avoidance(2, CONFIG), np.array([ACQUIRE, TRACKING])
+    way, least, deepest = tracked_radius(10.0), np.inf, -np.inf
+    at = 13.0 * np.array([np.cos(angle), np.sin(angle)])
+    pose = np.array([[*at, angle + np.pi + turn], [way, 0.0, np.pi / 2]])
+    nobody, speed = np.full((2, 2), np.nan), np.zeros(2)
+    for _ in range(900):
+        edge = edge_of(pose, 10.0)
+        known, ways = neighbours(pose, state, speed), np.arctan2(edge[:, 1], edge[:, 0])
+        wanted, heading = acquire(edge, CONFIG), onto(edge, CONFIG)
+        command = avoidance.apply(wanted, heading, ways, state, known, nobody)
+        command[1] = 0.0
+        speed = command[:, 0]
+        pose = drive(pose, command)
+        least = min(least, np.hypot(*(pose[0, :2] - pose[1, :2])))
+        deepest = max(deepest, 10.0 - np.hypot(*pose[0, :2]))
+    assert least > 2.0
+    assert deepest < -0.43
+    # nothing keeps it from the edge any more
+    assert edge_errors(edge_of(pose, 10.0), CONFIG)[0][0] == pytest.approx(0.0, abs=0.15)
 
 
 def test_circles_are_found_from_tracks():

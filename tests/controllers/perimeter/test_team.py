@@ -70,6 +70,25 @@ def test_states_in_order_of_a_robot_that_finds_it_alone():
     assert group.state[1:].tolist() == [SEARCHING] * 2
 
 
+def test_who_tracks_makes_room_for_one_who_acquires_behind_it():
+    group = team()
+    pose = np.array([[0.0, 0.0, 0.0], [-2.0, -1.0, 0.5], [30.0, 0.0, 0.0]])
+    far = np.array([[0.0, 0.0, 0.0], [9.95, 0.0, 0.0], [30.0, 0.0, 0.0]])
+    links, none = ~np.eye(N, dtype=bool), np.zeros(N)
+    speeds = []
+    for k in range(60):
+        spoken = group.speak(percepts(0.1 * k, pose=pose))
+        spoken[1, 3] = ACQUIRE if k >= 20 else SEARCHING
+        spoken[2, 3] = TRACKING
+        spoken[2, :2] = far[1, :2]  # ahead, as far as it is desired to be
+        told = hears(N, spoken, links, 0.1 * k)
+        now = percepts(0.1 * k, pose=pose, edge=edge(0.6), inside=none + (k // 2) % 2, **told)
+        speeds.append(group.step(now)[0, 0])
+    assert group.state[0] == TRACKING
+    assert speeds[19] == 0.0
+    assert speeds[-1] == pytest.approx(0.4)
+
+
 def test_news_hop_from_radio_to_radio():
     group = team()
     chain = np.array([[0, 1, 0], [1, 0, 1], [0, 1, 0]], dtype=bool)  # 0 and 2 do not hear
