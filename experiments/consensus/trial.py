@@ -41,9 +41,16 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
 
 
 def world(condition: Mapping[str, Any]) -> Any:
-    """The hall of a physical condition with its robots, seed 0, for ``mjmr mjcf``."""
-    from experiments.consensus import physical
+    """The hall with its robots, seed 0, for ``mjmr mjcf``.
 
+    The linear model has no bodies: the hall is the one in which robots would do the like of it.
+    """
+    from experiments.consensus import physical, study
+
+    if condition["mode"] == "linear":
+        kept = {name: condition[name] for name in ("experiment", "robots", "graph")}
+        kept["experiment"] = "graph" if kept["experiment"] == "graph" else "three"
+        condition = study.condition(**kept, mode="physical")
     return physical.Team(condition, 0).simulation.world
 
 
