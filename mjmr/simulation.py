@@ -255,7 +255,16 @@ class Simulation(TickedSimulation):
         self.last_second.keep(self.step * self.timestep)
         self._ticks_done += 1
         if self._ticks_done % 6 == 0:
+            self._remember()
+
+    def _remember(self) -> None:
+        """Keep the state now, in the memory of the oldest one if it is a whole copy."""
+        if not (self._sleeps and len(self._history) == self._history.maxlen):
             self._history.append(self.snapshot())
+            return
+        physics = self._history.popleft().physics
+        mujoco.mj_copyData(physics, self.model, self.data)
+        self._history.append(replace(super().snapshot(), physics=physics))
 
     def _divergence(self, wrong: str = "") -> SimulationDivergedError:
         data = self.data
