@@ -147,14 +147,23 @@ def degrees_of(text: str, q: int) -> list[int]:
     return list(CanonicalModel(found).degrees)
 
 
-def _three(condition: Mapping[str, Any], streams: Streams) -> Metrics:
-    duration = condition["duration"]
+def planned(condition: Mapping[str, Any], streams: Streams) -> tuple[Runner, Schedule]:
+    """What three robots of the linear model run.
+
+    Raises:
+        InvalidInputError: Relative degrees that cannot be, or graphs that never meet the condition.
+    """
     schedule = three(
-        condition["schedule"], condition["dwell"], duration, condition["weight"],
+        condition["schedule"], condition["dwell"], condition["duration"], condition["weight"],
         streams.generator("leaders"),
     )  # fmt: skip
     refuse_hopeless(schedule, condition["anyway"])
-    runner = Runner(degrees_of(condition["degrees"], 3))
+    return Runner(degrees_of(condition["degrees"], 3)), schedule
+
+
+def _three(condition: Mapping[str, Any], streams: Streams) -> Metrics:
+    duration = condition["duration"]
+    runner, schedule = planned(condition, streams)
     channels = None
     if condition["weight_y"] > 0:
         other = three(

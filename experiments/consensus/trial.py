@@ -5,6 +5,7 @@ from typing import Any
 
 from experiments.consensus import linear
 from mjmr.errors import InvalidInputError
+from mjmr.randomness import Streams
 
 Metrics = dict[str, float | int | str | bool | None]
 MODES = {
@@ -25,17 +26,13 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
         InvalidInputError: The mode has no such experiment, parameters that do not go together,
             or graphs that never meet the structure condition and nobody asked for them.
     """
-    experiment, mode = condition["experiment"], condition["mode"]
-    if mode not in MODES[experiment]:
-        raise InvalidInputError(
-            f"experiment {experiment} is of mode {' or '.join(MODES[experiment])}; got {mode}"
-        )
-    if mode == "linear":
+    _check_mode(condition)
+    if condition["mode"] == "linear":
         return linear.trial(condition, seed)
     # MuJoCo, OpenCV and OSQP are loaded by the trials that use them
     from experiments.consensus import agreement, physical
 
-    if experiment == "agreement":
+    if condition["experiment"] == "agreement":
         return agreement.trial(condition, seed)
     return physical.trial(condition, seed)
 
@@ -44,14 +41,28 @@ def world(condition: Mapping[str, Any]) -> Any:
     """The hall with its robots, seed 0, for ``mjmr mjcf``.
 
     The linear model has no bodies: the hall is the one in which robots would do the like of it.
+
+    Raises:
+        InvalidInputError: As :func:`trial`; ``mjmr trial`` asks here whether a condition can be.
     """
     from experiments.consensus import physical, study
 
+    _check_mode(condition)
     if condition["mode"] == "linear":
+        if condition["experiment"] == "three":
+            linear.planned(condition, Streams(0))
         kept = {name: condition[name] for name in ("experiment", "robots", "graph")}
         kept["experiment"] = "graph" if kept["experiment"] == "graph" else "three"
         condition = study.condition(**kept, mode="physical")
     return physical.Team(condition, 0).simulation.world
+
+
+def _check_mode(condition: Mapping[str, Any]) -> None:
+    experiment, mode = condition["experiment"], condition["mode"]
+    if mode not in MODES[experiment]:
+        raise InvalidInputError(
+            f"experiment {experiment} is of mode {' or '.join(MODES[experiment])}; got {mode}"
+        )
 
 
 def prepare() -> None:

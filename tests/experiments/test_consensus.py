@@ -254,3 +254,19 @@ def test_cameras_and_rays_tell_the_same():
     assert found["inside_same"] > 0.98
     assert found["bearing_rms_deg"] < 1.0
     assert found["seen"] > 50
+
+
+@pytest.mark.parametrize(
+    ("given", "why"),
+    [
+        ({"schedule": "isolated"}, "never meet Assumption 4.2"),
+        ({"degrees": "0"}, "1 or more"),
+        ({"experiment": "lemmas", "mode": "physical"}, "of mode linear"),
+    ],
+)
+def test_what_cannot_be_run_is_bad_input_and_not_a_failed_trial(given, why, capsys):
+    from mjmr.cli import main
+
+    words = [f"{name}={value}" for name, value in given.items()]
+    assert main(["trial", "consensus", *words]) == 2
+    assert why in capsys.readouterr().err
