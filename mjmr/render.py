@@ -128,7 +128,7 @@ class Renderer:
         try:
             self._renderer.update_scene(data, camera, scene_option=self._option)
         finally:
-            self.model.geom_group[:] = groups  # the model is everybody's
+            self.model.geom_group[:] = groups  # what one camera does not see another may
         flags = self._renderer.scene.flags
         flags[mujoco.mjtRndFlag.mjRND_SHADOW] = self._fine
         flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = 0

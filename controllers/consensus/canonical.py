@@ -15,7 +15,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import expm
 
 from controllers.consensus.gains import as_array, check_gains
 from mjmr.errors import InvalidInputError
@@ -155,6 +154,8 @@ class CanonicalModel:
 def _exponential(table: bytes, size: int, duration: float) -> Array:
     """exp(-(I - D) t) of the bytes of D (size, size)."""
     rates = np.frombuffer(table).reshape(size, size) - np.eye(size)
+    from scipy.linalg import expm
+
     found = np.asarray(expm(rates * duration), dtype=np.float64)
     found.setflags(write=False)
     return found

@@ -11,7 +11,6 @@ the paper asks only that they are nonzero, which is not enough for gains that de
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import networkx as nx
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -45,6 +44,8 @@ def condense(heard: ArrayLike) -> Condensation:
     """
     flags = graph(heard)
     # an arrow from the one who speaks to the one who hears: speakers come first
+    import networkx as nx  # a quarter of a second, which most callers of this package need not wait
+
     arrows = nx.from_numpy_array(flags.T & ~np.eye(len(flags), dtype=bool),
                                  create_using=nx.DiGraph)  # fmt: skip
     condensed = nx.condensation(arrows)
@@ -62,6 +63,8 @@ def reducible(heard: ArrayLike) -> bool:
 def rooted(heard: ArrayLike) -> bool:
     """Whether somebody is heard by all, directly or through others."""
     flags = graph(heard)
+    import networkx as nx
+
     arrows = nx.from_numpy_array(flags.T, create_using=nx.DiGraph)
     groups = condense(flags).groups
     return len(nx.descendants(arrows, groups[0][0]) | {groups[0][0]}) == len(flags)
