@@ -237,6 +237,16 @@ def _bounds(area: Sequence[float]) -> NDArray[np.float64]:
     return found
 
 
+def _show(model: mujoco.MjModel, data: mujoco.MjData, footage: Footage, time: float) -> int:
+    """Put everything where it was at ``time`` [s]; which sample of the footage that is."""
+    index = min(int(np.searchsorted(footage.times, time - 1e-9)), len(footage.times) - 1)
+    data.qpos[:] = footage.positions[index]
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_camlight(model, data)
+    mujoco.mj_tendon(model, data)
+    return index
+
+
 class _Panel:
     """One recording in one rectangle."""
 
@@ -261,12 +271,8 @@ class _Panel:
         """Picture at ``time`` [s], RGB."""
         footage, model, data = self._footage, self._model, self._data
         times = footage.times
-        index = min(int(np.searchsorted(times, time - 1e-9)), len(times) - 1)
+        index = _show(model, data, footage, time)
         poses = footage.poses[index]
-        data.qpos[:] = footage.positions[index]
-        mujoco.mj_kinematics(model, data)
-        mujoco.mj_camlight(model, data)
-        mujoco.mj_tendon(model, data)
         renderer = self._renderer
         self._pillars.resize(renderer.model, float(times[index]))
         image = renderer.picture(data, self._camera(index))
@@ -333,10 +339,7 @@ class _EyePanel:
     def picture(self, time: float) -> Picture:
         """Picture at ``time`` [s], RGB."""
         footage, data = self._footage, self._data
-        index = min(int(np.searchsorted(footage.times, time - 1e-9)), len(footage.times) - 1)
-        data.qpos[:] = footage.positions[index]
-        mujoco.mj_kinematics(footage.model, data)
-        mujoco.mj_camlight(footage.model, data)
+        index = _show(footage.model, data, footage, time)
         self._pillars.resize(self._renderer.model, float(footage.times[index]))
         seen = self._renderer.picture(data, self._camera)
         shown = [seen] if self._paint is None else [seen, self._paint(seen)]

@@ -89,12 +89,6 @@ class Pillar:
                 f"away from its limit of {self.limit:g} m"
             )
 
-    def radius_at(self, time: float) -> float:
-        """Radius at ``time`` [s], in m."""
-        if self.growth == 0.0 or self.limit is None:
-            return self.radius
-        return float(radii_at(self.radius, self.growth, self.limit, time))
-
     @property
     def largest(self) -> float:
         """Largest radius it ever has [m]."""
@@ -148,7 +142,7 @@ class Pillars:
         self.change = bool(self._rate.any())
 
     def radii(self, time: float) -> Array:
-        """Radii (k,) at ``time`` [s], in m; see :meth:`Pillar.radius_at`."""
+        """Radii (k,) at ``time`` [s], in m; see :func:`radii_at`."""
         return radii_at(self._first, self._rate, self._limit, time)
 
     def resize(self, model: "mujoco.MjModel", time: float) -> None:
