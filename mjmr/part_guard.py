@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mjmr.errors import MissingGLError, PartError, one_line
+from mjmr.errors import InvalidInputError, MissingGLError, PartError, one_line
 from mjmr.parts import Method, Part, shape_text
 
 
@@ -114,6 +114,9 @@ class Guard:
         shape = tuple(int(sizes[s]) if isinstance(s, str) else s for s in wanted or ())
         robots = bool(wanted) and isinstance(wanted[0], str)
         function, calls = getattr(self._part, method.name), -1
+        from mjmr.study import resolve
+
+        demand: Callable[..., Any] | None = resolve(method.check)
 
         def when() -> str:
             return self._when() or f"at call {calls}"
@@ -131,6 +134,13 @@ class Guard:
                     f"{self._told} returned {wrong} {when()}; {method.name} must "
                     f"return finite floats of shape {shape_text(shape)}{unit}"
                 )
+            if demand is not None:
+                try:
+                    demand(array, *arguments)
+                except InvalidInputError as e:
+                    raise PartError(
+                        f"what {self._told} returned {when()} cannot be: {e}"
+                    ) from e
             return array
 
         return call

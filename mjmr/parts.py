@@ -29,6 +29,9 @@ class Method:
         unit: Unit and frame of what is returned.
         optional: Whether a class may do without; one that has it must fit all the same.
         doc: When it is called and with what, for ``mjmr show``.
+        check: What is demanded of the numbers beside their shape: ``package.module:function``,
+            called with what is returned and the arguments; an
+            :class:`~mjmr.errors.InvalidInputError` it raises is told as the part's.
     """
 
     name: str
@@ -37,6 +40,7 @@ class Method:
     unit: str = ""
     optional: bool = False
     doc: str = ""
+    check: str | None = None
 
     def __str__(self) -> str:
         text = f"{self.name}({', '.join(self.arguments)})"

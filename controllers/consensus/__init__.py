@@ -18,6 +18,12 @@ from controllers.consensus.hand import (
 from controllers.consensus.hand_team import HandTeam, Scan
 from controllers.consensus.leader_follower import SeparationBearing
 from controllers.consensus.relative import acceleration, offset_relative
+from controllers.consensus.rules import (
+    EqualGains,
+    MetropolisGains,
+    NeighbourGains,
+    RelativeForm,
+)
 from controllers.consensus.structure import (
     Condensation,
     StructureReport,
@@ -31,7 +37,11 @@ __all__ = [
     "AverageConsensus",
     "CanonicalModel",
     "Condensation",
+    "EqualGains",
     "HandTeam",
+    "MetropolisGains",
+    "NeighbourGains",
+    "RelativeForm",
     "Scan",
     "SeparationBearing",
     "StructureReport",

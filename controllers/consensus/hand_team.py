@@ -5,13 +5,13 @@ feedback linearization turns it into changes of forward speed and turn rate, whi
 loop follows. The speeds that are changed are the set points the drives have reached.
 """
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from controllers.consensus.hand import command_of_velocity, command_rates, hand_velocity
-from controllers.consensus.relative import acceleration
+from controllers.consensus.rules import RelativeForm
 from mjmr.errors import InvalidInputError
 
 if TYPE_CHECKING:
@@ -27,10 +27,17 @@ class HandTeam:
         length: L, from the axle to the hand point [m].
         period: Between two calls [s].
         barrier: Filter of the hands' velocities, or None.
+        law: What gives accelerations; has the ``step`` of :class:`RelativeForm`.
     """
 
-    def __init__(self, length: float, period: float, barrier: "BarrierFilter | None" = None):
-        """Args: see the class.
+    def __init__(
+        self,
+        length: float,
+        period: float,
+        barrier: "BarrierFilter | None" = None,
+        law: Any = None,
+    ):
+        """Args: see the class; ``law`` None: the paper's.
 
         Raises:
             InvalidInputError: A length or period that is not positive.
@@ -38,9 +45,16 @@ class HandTeam:
         if not (length > 0 and period > 0):
             raise InvalidInputError(f"length and period are positive; got {length} m, {period} s")
         self.length, self.period, self.barrier = float(length), float(period), barrier
+        self.law = RelativeForm(0) if law is None else law
 
     def step(
-        self, yaw: Array, executed: Array, relative: Array, gains: Array, hands: Array | None = None
+        self,
+        yaw: Array,
+        executed: Array,
+        relative: Array,
+        gains: Array,
+        hands: Array | None = None,
+        reference: tuple[Array, Array] | None = None,
     ) -> Array:
         """Commands (n, 2) of the next period.
 
@@ -51,12 +65,18 @@ class HandTeam:
                 NaN where nothing is known.
             gains: (n, n), rows summing to one.
             hands: Hand points (n, 2) [m], for a barrier.
+            reference: Velocity and acceleration (n, 2) each at which the outputs' common value and
+                the own offset are known to move; the law sees velocities less these. None: they
+                stand, as in the paper.
 
         Raises:
             InvalidInputError: There is a barrier and no hands.
         """
         velocity = hand_velocity(yaw, executed, self.length)
-        wanted = acceleration(velocity, relative, gains)
+        if reference is None:
+            wanted = self.law.step(velocity, relative, gains)
+        else:
+            wanted = reference[1] + self.law.step(velocity - reference[0], relative, gains)
         if self.barrier is None:
             rates = command_rates(yaw, executed, wanted, self.length)
             return executed + rates * self.period

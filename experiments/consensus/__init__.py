@@ -4,6 +4,7 @@ from pathlib import Path
 
 from experiments.consensus.sizes import FULL, QUICK, STANDARD
 from mjmr.conditions import Parameter
+from mjmr.parts import Method, Part
 from mjmr.study import Study
 
 _HERE = "experiments.consensus"
@@ -107,5 +108,41 @@ study = Study(
     world=f"{_HERE}.trial:world",
     bench=f"{_HERE}.bench:bench",
     prepare=f"{_HERE}.trial:prepare",
+    parts=(
+        Part(
+            role="gains",
+            doc="weights each robot gives to whom it hears or sees, and to itself",
+            default="controllers.consensus:NeighbourGains",
+            constructor=("n",),
+            methods=(
+                Method(
+                    name="step",
+                    arguments=("heard", "weight"),
+                    returns=("n", "n"),
+                    unit="rows 0 or more that sum to one, 0 where nobody is heard",
+                    doc="for every graph of a schedule and every look: heard (n, n) bool, row "
+                    "hears column and itself, and the condition's weight; experiment graph has "
+                    "controllers.consensus:EqualGains unless another takes the role",
+                    check="experiments.consensus.roles:refuse_gains",
+                ),
+            ),
+        ),
+        Part(
+            role="law",
+            doc="accelerations of the hand points, in mode physical",
+            default="controllers.consensus:RelativeForm",
+            constructor=("n",),
+            methods=(
+                Method(
+                    name="step",
+                    arguments=("velocity", "relative", "gains"),
+                    returns=("n", 2),
+                    unit="m/s^2, axes of the argument",
+                    doc="50 times a second; own velocities (n, 2) [m/s], outputs from robot row "
+                    "to robot column (n, n, 2) [m], NaN where nothing is known, and gains (n, n)",
+                ),
+            ),
+        ),
+    ),
     verdicts=Path(__file__).with_name("verdicts.json"),
 )

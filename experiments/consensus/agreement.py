@@ -7,10 +7,13 @@ import numpy as np
 
 from experiments.consensus.arena import EYE, HAND, RANGE, Eyes
 from experiments.consensus.physical import Metrics, Team
+from experiments.consensus.roles import PUBLISHED
 from mjmr.geometry import wrap_angle
 
 
-def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
+def trial(
+    condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED
+) -> Metrics:
     """Robots agree by rays while cameras look at the same instants.
 
     Returns:
@@ -19,7 +22,7 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
         ``inside_same``, the share without pairs within 2 degrees of the cone's edge or 0.2 m of
         the range.
     """
-    team = Team({**condition, "sight": "rays"}, seed, cameras=True)
+    team = Team({**condition, "sight": "rays"}, seed, parts, cameras=True)
     eyes: Eyes = team.cameras
     cone = np.radians(condition["cone_deg"])
     by_rays, by_camera = [], []

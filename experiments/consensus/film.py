@@ -7,6 +7,7 @@ from typing import Any
 from experiments.consensus.physical import Team
 from mjmr.film import Film
 from mjmr.film_options import FilmOptions
+from mjmr.parts import Parts
 from mjmr.recording import Recording
 from mjmr.study import Study
 
@@ -18,11 +19,10 @@ SHOWN: tuple[tuple[str, dict[str, Any]], ...] = (
 )
 
 
-def show(changes: dict[str, Any], seed: int) -> Recording:
-    """Run three robots in MuJoCo and record them."""
-    from experiments.consensus import study
-
-    team = Team(study.condition(mode="physical", **changes), seed)
+def show(study: Study, changes: dict[str, Any], seed: int) -> Recording:
+    """Run three robots in MuJoCo, with the study's choice of parts, and record them."""
+    parts = Parts(study.parts, study.chosen)
+    team = Team(study.condition(mode="physical", **changes), seed, parts)
 
     def caption() -> str:
         hears = [
@@ -43,5 +43,5 @@ def film(study: Study, path: Path, options: FilmOptions) -> None:
     options = dataclasses.replace(options, speed=options.speed or _SPEED)
     picture = Film(f"Consensus over graphs that switch{study.swapped}", options)
     for label, changes in SHOWN:
-        picture.add(show(changes, 1), label, trail=float("inf"))
+        picture.add(show(study, changes, 1), label, trail=float("inf"))
     picture.write(path)

@@ -2,12 +2,13 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import networkx as nx
 import numpy as np
 from numpy.typing import NDArray
 
-from controllers.consensus import StructureReport, check_structure, equal_gains, neighbour_gains
+from controllers.consensus import StructureReport, check_structure
 from mjmr.errors import InvalidInputError
 
 Array = NDArray[np.float64]
@@ -73,7 +74,7 @@ class Schedule:
 
 
 def three(
-    name: str, dwell: float, duration: float, weight: float, rng: np.random.Generator
+    name: str, dwell: float, duration: float, weight: float, rng: np.random.Generator, rule: Any
 ) -> Schedule:
     """Schedule of the paper's three robots.
 
@@ -83,6 +84,7 @@ def three(
         duration: Of the run [s].
         weight: That a follower gives to the one it follows.
         rng: Draws random leaders.
+        rule: The part that gives weights; see :mod:`experiments.consensus.roles`.
     """
     cycle = _CYCLES[name]
     count = max(1, int(np.ceil(duration / dwell - 1e-9)))
@@ -93,7 +95,7 @@ def three(
     graphs = [cycle[k] for k in order]
     fade = _DECAY ** np.arange(count) if name == "decaying" else np.ones(count)
     return Schedule(
-        graphs, [neighbour_gains(g, weight * f) for g, f in zip(graphs, fade, strict=True)], dwell
+        graphs, [rule.step(g, float(weight * f)) for g, f in zip(graphs, fade, strict=True)], dwell
     )
 
 
@@ -138,10 +140,12 @@ def team_graph(name: str, n: int, rng: np.random.Generator) -> Flags:
     return nx.to_numpy_array(graph).astype(bool) | np.eye(n, dtype=bool)
 
 
-def static(name: str, n: int, duration: float, rng: np.random.Generator) -> Schedule:
-    """Schedule of one graph for the whole run, everybody weighting all it hears alike."""
+def static(
+    name: str, n: int, duration: float, weight: float, rng: np.random.Generator, rule: Any
+) -> Schedule:
+    """Schedule of one graph for the whole run; arguments as of :func:`three`."""
     graph = team_graph(name, n, rng)
-    return Schedule([graph], [equal_gains(graph)], duration)
+    return Schedule([graph], [rule.step(graph, weight)], duration)
 
 
 def random_admissible(

@@ -16,6 +16,7 @@ from experiments.consensus.graphs import (
     three,
 )
 from experiments.consensus.lemmas import lemmas
+from experiments.consensus.roles import PUBLISHED, gains_rule
 from mjmr.errors import InvalidInputError
 from mjmr.randomness import Streams
 
@@ -111,7 +112,9 @@ def run(
     }
 
 
-def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
+def trial(
+    condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED
+) -> Metrics:
     """Metrics of one linear condition."""
     streams = Streams(seed)
     experiment = condition["experiment"]
@@ -122,10 +125,10 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
     if experiment == "random-sequence":
         return _random_sequence(streams.generator("sequence"))
     if experiment == "graph":
-        return _graph(condition, streams)
+        return _graph(condition, streams, parts)
     if experiment == "mixed-channels":
-        return _mixed_channels(condition)
-    return _three(condition, streams)
+        return _mixed_channels(condition, parts)
+    return _three(condition, streams, parts)
 
 
 def degrees_of(text: str, q: int) -> list[int]:
@@ -147,7 +150,9 @@ def degrees_of(text: str, q: int) -> list[int]:
     return list(CanonicalModel(found).degrees)
 
 
-def planned(condition: Mapping[str, Any], streams: Streams) -> tuple[Runner, Schedule]:
+def planned(
+    condition: Mapping[str, Any], streams: Streams, parts: Mapping[str, Any] = PUBLISHED
+) -> tuple[Runner, Schedule]:
     """What three robots of the linear model run.
 
     Raises:
@@ -155,20 +160,20 @@ def planned(condition: Mapping[str, Any], streams: Streams) -> tuple[Runner, Sch
     """
     schedule = three(
         condition["schedule"], condition["dwell"], condition["duration"], condition["weight"],
-        streams.generator("leaders"),
+        streams.generator("leaders"), gains_rule(parts, 3),
     )  # fmt: skip
     refuse_hopeless(schedule, condition["anyway"])
     return Runner(degrees_of(condition["degrees"], 3)), schedule
 
 
-def _three(condition: Mapping[str, Any], streams: Streams) -> Metrics:
+def _three(condition: Mapping[str, Any], streams: Streams, parts: Mapping[str, Any]) -> Metrics:
     duration = condition["duration"]
-    runner, schedule = planned(condition, streams)
+    runner, schedule = planned(condition, streams, parts)
     channels = None
     if condition["weight_y"] > 0:
         other = three(
             condition["schedule"], condition["dwell"], duration, condition["weight_y"],
-            streams.generator("leaders"),
+            streams.generator("leaders"), gains_rule(parts, 3),
         )  # fmt: skip
         channels = [np.stack(pair) for pair in zip(schedule.gains, other.gains, strict=True)]
     return run(runner, START, schedule, duration, channel_gains=channels)
@@ -224,11 +229,11 @@ def _random_sequence(rng: np.random.Generator) -> Metrics:
     }
 
 
-def _mixed_channels(condition: Mapping[str, Any]) -> Metrics:
+def _mixed_channels(condition: Mapping[str, Any], parts: Mapping[str, Any]) -> Metrics:
     """Gains whose blocks are not diagonal: a tenth of each own weight goes to the other channel."""
     schedule = three(
         condition["schedule"], condition["dwell"], condition["duration"], condition["weight"],
-        np.random.default_rng(0),
+        np.random.default_rng(0), gains_rule(parts, 3),
     )  # fmt: skip
     # systems are (robot, channel): a channel of its own would be all the theory allows
     mix = np.array([[0.9, 0.1], [0.1, 0.9]])
@@ -249,11 +254,14 @@ def _mixed_channels(condition: Mapping[str, Any]) -> Metrics:
     }
 
 
-def _graph(condition: Mapping[str, Any], streams: Streams) -> Metrics:
+def _graph(condition: Mapping[str, Any], streams: Streams, parts: Mapping[str, Any]) -> Metrics:
     """Time to agreement of n robots under one graph; gives up after ``duration``."""
     n = condition["robots"]
     start = streams.generator("start").uniform(-0.5, 0.5, (n, 2))
-    schedule = static(condition["graph"], n, 1e9, streams.generator("graph"))
+    schedule = static(
+        condition["graph"], n, 1e9, condition["weight"], streams.generator("graph"),
+        gains_rule(parts, n, many=True),
+    )  # fmt: skip
     runner = Runner([2] * n)
     state = runner.model.start(start)
     step, time = 1.0, 0.0

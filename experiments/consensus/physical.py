@@ -12,7 +12,6 @@ from controllers.consensus import (
     Scan,
     hand_position,
     hand_velocity,
-    neighbour_gains,
     offset_relative,
     reducible,
     rooted,
@@ -23,6 +22,7 @@ from experiments.consensus.arena import HAND, Eyes, add_team, hall, mount_rays
 from experiments.consensus.graphs import Schedule, refuse_hopeless, static, three
 from experiments.consensus.linear import START, reference
 from experiments.consensus.refusals import refuse_unfit
+from experiments.consensus.roles import PUBLISHED, gains_rule
 from mjmr.faults import Fault
 from mjmr.geometry import rotate
 from mjmr.metrics import ContactMeter
@@ -48,12 +48,19 @@ _SAMPLES = 1.0  # s, between what is kept for plots
 class Team:
     """Robots with what they sense and say, their controller, and what is measured of them."""
 
-    def __init__(self, condition: Mapping[str, Any], seed: int, cameras: bool = False):
+    def __init__(
+        self,
+        condition: Mapping[str, Any],
+        seed: int,
+        parts: Mapping[str, Any] = PUBLISHED,
+        cameras: bool = False,
+    ):
         """Build the world of a condition and put the robots into it.
 
         Args:
             condition: See the study's parameters.
             seed: Of the trial.
+            parts: Classes of the roles ``gains`` and ``law``.
             cameras: Whether there are cameras besides rays, :attr:`cameras`, which nobody uses.
 
         Raises:
@@ -65,7 +72,9 @@ class Team:
         streams = Streams(seed)
         self.many = condition["experiment"] == "graph"
         self.sighted = condition["sight"] != "given"
-        self.schedule = self._schedule(condition, streams)
+        count = condition["robots"] if self.many else len(START)
+        self.rule = gains_rule(parts, count, self.many)
+        self.schedule: Any = None if self.sighted else self._schedule(condition, streams)
         start, self.offsets, bounds = self._places(condition, streams)
         self.start = start
         self.n = len(start)
@@ -98,9 +107,9 @@ class Team:
             # hands this far apart leave the middles a diameter and the margin apart
             distance = 2 * FourWheeler.radius + 2 * HAND + 0.05
             self.barrier = BarrierFilter(self.n, BarrierConfig(distance=distance, top_speed=1.0))
-        self.control = HandTeam(HAND, 1 / RATE, self.barrier)
+        self.control = HandTeam(HAND, 1 / RATE, self.barrier, parts["law"](self.n))
         self.scan = Scan(self.n, patience=1.0, rate=0.5, settled=_NEAR)
-        self.sight = Sight(self.n, condition["weight"])
+        self.sight = Sight(self.n, condition["weight"], self.rule)
         self.log = Log(self)
 
     def run(self, duration: float, until_agreed: bool = False) -> None:
@@ -153,15 +162,15 @@ class Team:
         duration = condition["duration"]
         if self.many:
             schedule = static(
-                condition["graph"], condition["robots"], duration, streams.generator("graph")
-            )
+                condition["graph"], condition["robots"], duration, condition["weight"],
+                streams.generator("graph"), self.rule,
+            )  # fmt: skip
         else:
             schedule = three(
                 condition["schedule"], condition["dwell"], duration, condition["weight"],
-                streams.generator("leaders"),
+                streams.generator("leaders"), self.rule,
             )  # fmt: skip
-        if not self.sighted:
-            refuse_hopeless(schedule, condition["anyway"])
+        refuse_hopeless(schedule, condition["anyway"])
         return schedule
 
     def _places(self, condition: Mapping[str, Any], streams: Streams) -> tuple[Array, Array, Any]:
@@ -207,9 +216,15 @@ class Sight:
         rooted: Of these, whose graph had somebody seen by all, directly or through others.
     """
 
-    def __init__(self, n: int, weight: float):
-        """Args: n: Robots. weight: That each gives to all it sees together."""
-        self._n, self._weight = n, weight
+    def __init__(self, n: int, weight: float, rule: Any):
+        """Nobody has been seen yet.
+
+        Args:
+            n: Robots.
+            weight: That each gives to all it sees together.
+            rule: The part that gives weights.
+        """
+        self._n, self._weight, self._rule = n, weight, rule
         self.seen = np.eye(n, dtype=bool)
         self.gains = np.eye(n)
         self.bearing = np.full((n, n), np.nan)
@@ -231,7 +246,7 @@ class Sight:
             self._relative = offset_relative(rotate(place, yaw[:, None]), offsets)
             self.bearing = found[..., 1]
             self.seen = np.isfinite(found[..., 0]) | np.eye(self._n, dtype=bool)
-            self.gains = neighbour_gains(self.seen, self._weight)
+            self.gains = self._rule.step(self.seen, self._weight)
             self.looks += 1
             self.reducible += reducible(self.seen)
             self.rooted += rooted(self.seen)
@@ -301,9 +316,11 @@ class Log:
                 self.heard.append(team.schedule.graphs[team.schedule.at(time)])
 
 
-def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
+def trial(
+    condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED
+) -> Metrics:
     """Metrics of one physical condition."""
-    team = Team(condition, seed)
+    team = Team(condition, seed, parts)
     team.run(condition["duration"], until_agreed=team.many)
     log = team.log
     common: Metrics = {

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from experiments.consensus import linear
+from experiments.consensus.roles import PUBLISHED
 from mjmr.errors import InvalidInputError
 from mjmr.randomness import Streams
 
@@ -19,8 +20,15 @@ MODES = {
 }
 
 
-def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
+def trial(
+    condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED
+) -> Metrics:
     """Run one experiment.
+
+    Args:
+        condition: See the study's parameters.
+        seed: Of the trial.
+        parts: Classes of the roles ``gains`` and ``law``.
 
     Raises:
         InvalidInputError: The mode has no such experiment, parameters that do not go together,
@@ -28,13 +36,13 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
     """
     _check_mode(condition)
     if condition["mode"] == "linear":
-        return linear.trial(condition, seed)
+        return linear.trial(condition, seed, parts)
     # MuJoCo, OpenCV and OSQP are loaded by the trials that use them
     from experiments.consensus import agreement, physical
 
     if condition["experiment"] == "agreement":
-        return agreement.trial(condition, seed)
-    return physical.trial(condition, seed)
+        return agreement.trial(condition, seed, parts)
+    return physical.trial(condition, seed, parts)
 
 
 def world(condition: Mapping[str, Any]) -> Any:

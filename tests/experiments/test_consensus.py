@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from controllers.consensus import CanonicalModel, check_structure, rooted
+from controllers.consensus import CanonicalModel, NeighbourGains, check_structure, rooted
 from experiments.consensus import quotes, study
 from experiments.consensus.claims import claims
 from experiments.consensus.graphs import random_admissible, team_graph, three
@@ -21,6 +21,7 @@ from mjmr.claims import judge
 from mjmr.errors import InvalidInputError, TruthError
 from mjmr.table import Row, Table
 
+RULE = NeighbourGains(3)
 SHORT = {"mode": "physical", "duration": 4.0}
 
 
@@ -82,7 +83,7 @@ def test_every_size_has_what_its_claims_need(size):
 def test_schedules_that_meet_the_condition_are_told_from_those_that_never_do():
     rng = np.random.default_rng(0)
     names = ("alternate", "case-i", "star", "joint", "isolated", "decaying")
-    holds = {name: three(name, 2.0, 60.0, 0.2, rng).structure().holds for name in names}
+    holds = {name: three(name, 2.0, 60.0, 0.2, rng, RULE).structure().holds for name in names}
     assert holds == {"alternate": True, "case-i": True, "star": True, "joint": False,
                      "isolated": False, "decaying": False}  # fmt: skip
 
@@ -160,7 +161,7 @@ def test_graphs_of_many_are_connected_both_ways(name):
 def test_the_table_of_dwells_and_a_leader_with_a_velocity():
     found = run(dwell=5.0)
     assert (found["x_m"], found["y_m"]) == pytest.approx((4.511, 3.744), abs=1e-3)
-    schedule = three("case-i", 5.0, 300.0, 0.2, np.random.default_rng(0))
+    schedule = three("case-i", 5.0, 300.0, 0.2, np.random.default_rng(0), RULE)
     velocity = np.array([[0.4, -0.2], [0.0, 0.0], [0.0, 0.0]])
     ends = follow(Runner([2, 2, 2]), START, schedule, 300.0, velocity=velocity)
     # a leader that starts with velocity w ends at p + w / 2
@@ -169,7 +170,7 @@ def test_the_table_of_dwells_and_a_leader_with_a_velocity():
 
 @pytest.mark.parametrize("dwell", [0.7, 0.1])
 def test_gains_change_at_the_instants_of_a_schedule_that_no_look_falls_on(dwell):
-    schedule = three("alternate", dwell, 8 * dwell, 0.2, np.random.default_rng(0))
+    schedule = three("alternate", dwell, 8 * dwell, 0.2, np.random.default_rng(0), RULE)
     model = CanonicalModel([2, 2, 2])
     state = model.start(START)
     for gains in schedule.gains:
