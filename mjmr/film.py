@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from mjmr.errors import InvalidInputError, UnknownNameError
 from mjmr.film_options import FilmOptions
+from mjmr.finite import finite
 from mjmr.footage import Footage
 from mjmr.overlay import draw_notes, draw_text, draw_trails, palette
 from mjmr.pillar import Pillars
@@ -226,11 +227,8 @@ def _boxes_for_planes(model: mujoco.MjModel) -> None:
 
 def _bounds(area: Sequence[float]) -> NDArray[np.float64]:
     """An area as bounds (4,)."""
-    try:
-        found = np.array(area, dtype=np.float64)
-    except (TypeError, ValueError):
-        found = np.zeros(0)
-    if found.shape != (4,) or not np.isfinite(found).all() or not (found[:2] < found[2:]).all():
+    found = finite(area, (4,))
+    if found is None or not (found[:2] < found[2:]).all():
         raise InvalidInputError(
             f"an area is (xmin, ymin, xmax, ymax) [m], the first two below the last two; got {area}"
         )

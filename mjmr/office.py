@@ -20,6 +20,7 @@ from shapely.geometry import LineString, Point, Polygon, box
 from shapely.geometry.polygon import orient
 
 from mjmr.errors import InvalidInputError
+from mjmr.finite import finite
 
 Array = NDArray[np.float64]
 _TOUCH = 1e-6  # m
@@ -186,7 +187,7 @@ class _Checker:
         return found
 
     def _numbers(self, key: str, value: Any, count: int, index: int | None = None) -> Array:
-        row = _row(value, count)
+        row = finite(value, (count,))
         if row is None:
             raise self._error(key, index, f"must be {count} numbers, not {value!r}")
         return row
@@ -226,7 +227,7 @@ class _Checker:
         if not isinstance(route, list) or len(route) < 2:
             raise self._error("routes", index, f"needs two waypoints or more, not {route!r}")
         for k, point in enumerate(route):
-            if _row(point, 2) is None:
+            if finite(point, (2,)) is None:
                 line = self._line("routes", index, k)
                 raise self._error(
                     "routes", index,
@@ -318,12 +319,3 @@ class _Checker:
                     f"{told}: wall {near} (line {self._line('walls', near)}) is nearer than "
                     f"{clearance:g} m",
                 )  # fmt: skip
-
-
-def _row(value: Any, count: int) -> Array | None:
-    """The numbers (count,), or None if that is not what is given."""
-    try:
-        row = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        return None
-    return row if row.shape == (count,) and np.isfinite(row).all() else None

@@ -138,9 +138,7 @@ class Guard:
                 try:
                     demand(array, *arguments)
                 except InvalidInputError as e:
-                    raise PartError(
-                        f"what {self._told} returned {when()} cannot be: {e}"
-                    ) from e
+                    raise PartError(f"what {self._told} returned {when()} cannot be: {e}") from e
             return array
 
         return call

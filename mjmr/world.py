@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from mjmr.cart import Cart
 from mjmr.disc import Disc
 from mjmr.errors import InvalidInputError, UnknownNameError
+from mjmr.finite import finite
 from mjmr.group import Group
 from mjmr.mark import Mark
 from mjmr.materials import check_material
@@ -492,18 +493,15 @@ class World:
 
 
 def _point(values: ArrayLike, name: str) -> NDArray[np.float64]:
-    try:
-        point = np.array(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        point = np.empty(0)
-    if point.shape != (2,) or not np.isfinite(point).all():
+    point = finite(values, (2,))
+    if point is None:
         raise InvalidInputError(f"{name} must be two finite numbers (x, y); got {values}")
     return point
 
 
 def _rectangle(values: ArrayLike, name: str) -> NDArray[np.float64]:
-    rectangle = np.array(values, dtype=np.float64)
-    if rectangle.shape != (4,) or not np.isfinite(rectangle).all():
+    rectangle = finite(values, (4,))
+    if rectangle is None:
         raise InvalidInputError(f"{name} must be four finite numbers (xmin, ymin, xmax, ymax)")
     if (rectangle[2:] <= rectangle[:2]).any():
         raise InvalidInputError(f"{name} must have xmin < xmax and ymin < ymax; got {values}")

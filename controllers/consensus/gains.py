@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError
+from mjmr.finite import numbers
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -20,10 +21,10 @@ def as_array(values: ArrayLike, dtype: type, what: str) -> NDArray:
     Raises:
         InvalidInputError: Ragged rows, or entries that are no numbers.
     """
-    try:
-        return np.array(values, dtype=dtype)
-    except (TypeError, ValueError) as e:
-        raise InvalidInputError(f"{what} are numbers in rows of one length") from e
+    found = numbers(values, dtype)
+    if found is None:
+        raise InvalidInputError(f"{what} are numbers in rows of one length")
+    return found
 
 
 def check_gains(gains: ArrayLike, q: int | None = None, heard: ArrayLike | None = None) -> Array:

@@ -16,11 +16,10 @@ from numbers import Integral
 from typing import Any
 
 import numpy as np
-import osqp
-import scipy.sparse as sparse
 from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError
+from mjmr.finite import finite, numbers
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -96,6 +95,9 @@ class BarrierFilter:
         """
         if n < 1:
             raise InvalidInputError(f"a safety filter is for 1 robot or more; got {n}")
+        import osqp  # a third of a second with scipy.sparse, for who filters alone
+        import scipy.sparse as sparse
+
         self.n, self.config = n, config
         self.solved = self.infeasible = self.iterations = 0
         self.changed = np.zeros(n)
@@ -192,10 +194,10 @@ class BarrierFilter:
         return bool((rows <= upper + _MET).all() and (rows >= self._lower - _MET).all())
 
     def _array(self, name: str, given: ArrayLike) -> Array:
-        array = _numbers(given)
-        if array.shape != (self.n, 2) or not np.isfinite(array).all():
+        array = finite(given, (self.n, 2))
+        if array is None:
             raise InvalidInputError(
-                f"{name} must be finite and of shape ({self.n}, 2); got {array.shape}"
+                f"{name} must be finite and of shape ({self.n}, 2); got {_shape(given)}"
             )
         return array
 
@@ -204,10 +206,11 @@ class BarrierFilter:
         k = self.config.obstacles
         points = np.full((self.n, k, 2), np.nan)
         if obstacles is not None:
-            given = _numbers(obstacles)
-            if given.ndim != 3 or given.shape[::2] != (self.n, 2) or given.shape[1] > k:
+            given = numbers(obstacles)
+            fits = given is not None and given.ndim == 3 and given.shape[::2] == (self.n, 2)
+            if given is None or not fits or given.shape[1] > k:
                 raise InvalidInputError(
-                    f"obstacles have shape ({self.n}, k, 2), k at most {k}; got {given.shape}"
+                    f"obstacles have shape ({self.n}, k, 2), k at most {k}; got {_shape(obstacles)}"
                 )
             points[:, : given.shape[1]] = given
         away = (position[:, None] - points).reshape(-1, 2)
@@ -217,12 +220,9 @@ class BarrierFilter:
         return -2 * away, room
 
 
-def _numbers(given: ArrayLike) -> Array:
-    """An array; an empty one of what is ragged or no numbers."""
-    try:
-        return np.asarray(given, dtype=np.float64)
-    except (TypeError, ValueError):
-        return np.empty(0)
+def _shape(given: ArrayLike) -> str:
+    found = numbers(given)
+    return "what are no numbers in rows of one length" if found is None else str(found.shape)
 
 
 def keep_right(position: Array, wish: Array, reach: float, angle: float) -> Array:

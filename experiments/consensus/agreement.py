@@ -11,9 +11,7 @@ from experiments.consensus.roles import PUBLISHED
 from mjmr.geometry import wrap_angle
 
 
-def trial(
-    condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED
-) -> Metrics:
+def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED) -> Metrics:
     """Robots agree by rays while cameras look at the same instants.
 
     Returns:

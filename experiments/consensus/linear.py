@@ -112,9 +112,7 @@ def run(
     }
 
 
-def trial(
-    condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED
-) -> Metrics:
+def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED) -> Metrics:
     """Metrics of one linear condition."""
     streams = Streams(seed)
     experiment = condition["experiment"]

@@ -316,9 +316,7 @@ class Log:
                 self.heard.append(team.schedule.graphs[team.schedule.at(time)])
 
 
-def trial(
-    condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED
-) -> Metrics:
+def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED) -> Metrics:
     """Metrics of one physical condition."""
     team = Team(condition, seed, parts)
     team.run(condition["duration"], until_agreed=team.many)

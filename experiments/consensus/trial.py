@@ -20,9 +20,7 @@ MODES = {
 }
 
 
-def trial(
-    condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED
-) -> Metrics:
+def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED) -> Metrics:
     """Run one experiment.
 
     Args:

@@ -3,10 +3,8 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from mjmr.robots.diff_drive import WHEELS, DiffDrive
-from mjmr.robots.platform import Array, Drive
+from mjmr.robots.platform import Drive
 from mjmr.robots.unicycle import Unicycle
 
 if TYPE_CHECKING:
@@ -56,7 +54,3 @@ class Pioneer2DX(Unicycle):
     def always_allowed(self) -> float:
         """A command none of whose entries is above this needs no clamping."""
         return min(self.max_twist)
-
-    def clamp(self, command: Array) -> Array:
-        """Cut forward and turn of commands (n, 2) to ``max_twist``, each by itself."""
-        return np.clip(command, np.negative(self.max_twist), self.max_twist)

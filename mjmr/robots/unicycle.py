@@ -66,6 +66,10 @@ class Unicycle(Platform):
     def always_allowed(self) -> float:
         """A command none of whose entries is above this needs no clamping."""
 
+    def clamp(self, command: Array) -> Array:
+        """Cut forward and turn of commands (n, 2) to ``max_twist``, each by itself."""
+        return np.clip(command, np.negative(self.max_twist), self.max_twist)
+
     def twist_of(self, command: Array) -> Array:
         """Twists (n, 3): never sideways."""
         return np.insert(command, 1, 0.0, axis=1)

@@ -1,3 +1,6 @@
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from scipy.optimize import minimize
@@ -197,3 +200,13 @@ def test_shapes_are_checked():
         filter.filter(ring(2, 1.0), np.zeros((2, 2)), np.zeros((2, 1, 2)))
     with pytest.raises(InvalidInputError, match="1 robot or more"):
         BarrierFilter(0, RING)
+
+
+def test_importing_the_package_loads_no_solver():
+    code = (
+        "import sys\n"
+        "import controllers.safety\n"
+        "print([m for m in ('osqp', 'scipy.sparse') if m in sys.modules])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
