@@ -1,6 +1,6 @@
 """Consensus control: agreement over graphs that change, formations, leaders and followers."""
 
-from controllers.consensus.average import AverageConsensus
+from controllers.consensus.average import AverageConsensus, RatioConsensus, of_this_round
 from controllers.consensus.canonical import CanonicalModel, delta, overlap_coefficient, spread
 from controllers.consensus.gains import (
     check_gains,
@@ -16,6 +16,7 @@ from controllers.consensus.hand import (
     hand_velocity,
 )
 from controllers.consensus.hand_team import HandTeam, Scan
+from controllers.consensus.lag import harmonic_error, ramp_lag
 from controllers.consensus.leader_follower import SeparationBearing
 from controllers.consensus.relative import acceleration, offset_relative
 from controllers.consensus.rules import (
@@ -41,6 +42,7 @@ __all__ = [
     "HandTeam",
     "MetropolisGains",
     "NeighbourGains",
+    "RatioConsensus",
     "RelativeForm",
     "Scan",
     "SeparationBearing",
@@ -56,10 +58,13 @@ __all__ = [
     "graph",
     "hand_position",
     "hand_velocity",
+    "harmonic_error",
     "metropolis_gains",
     "neighbour_gains",
+    "of_this_round",
     "offset_relative",
     "overlap_coefficient",
+    "ramp_lag",
     "reducible",
     "rooted",
     "spread",

@@ -1,12 +1,16 @@
 """Average consensus on a number a robot, as a service to other systems."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from controllers.consensus.gains import metropolis_gains
 from mjmr.errors import InvalidInputError
+from mjmr.finite import finite, numbers
 
 Array = NDArray[np.float64]
+_MEMORY = 5  # rounds in which somebody heard counts as a neighbour: loss must not look like leaving
 
 
 class AverageConsensus:
@@ -16,17 +20,30 @@ class AverageConsensus:
     weights, links both ways). The sum is kept in every round, whatever the graph, so that joint
     connection over time is enough for the mean.
 
+    Over a radio a robot knows no links: it tells its estimate and how many it hears, and weighs
+    those it heard this round. Then the sum is kept only while who hears is heard: a lost message
+    moves one robot and not the other, and what all agree on in the end is no longer the mean.
+    :class:`RatioConsensus` is for such radios.
+
     Attributes:
         estimate: Of each robot (n, ...).
         rounds: Done so far.
+        crowded: Times a robot heard so many more than it had told that its weights were scaled
+            down, which does not keep the sum.
     """
 
     def __init__(self, values: ArrayLike):
         """Begin with the robots' own numbers (n, ...)."""
-        self.estimate = np.array(values, dtype=np.float64)
-        if not self.estimate.ndim or not len(self.estimate):
-            raise InvalidInputError("average consensus is of the numbers of 1 robot or more")
-        self.rounds = 0
+        found = numbers(values)
+        if found is None or not found.ndim or not len(found) or not np.isfinite(found).all():
+            raise InvalidInputError(
+                "average consensus is of the finite numbers of 1 robot or more, equally many each"
+            )
+        self.estimate: Array = found
+        self.rounds = self.crowded = 0
+        n = len(self.estimate)
+        self._silent = np.full((n, n), _MEMORY + 1)
+        self._told = np.zeros(n)
 
     def step(self, linked: ArrayLike) -> Array:
         """One round over the links (n, n) there are now; the new estimates, a copy."""
@@ -38,3 +55,127 @@ class AverageConsensus:
         self.estimate = np.tensordot(gains, self.estimate, axes=1)
         self.rounds += 1
         return self.estimate.copy()
+
+    def message(self) -> Array:
+        """What robots tell this round (n, 2): their estimate, and how many they heard of late."""
+        self._told = (self._silent <= _MEMORY).sum(axis=1).astype(np.float64)
+        return np.column_stack([self._scalars(), self._told])
+
+    def hear(self, messages: Any) -> Array:
+        """End a round with what was heard of it; the new estimates, a copy.
+
+        Args:
+            messages: (n, n, 2), receiver first; NaN where nothing was heard this round.
+
+        Raises:
+            InvalidInputError: Another shape, or estimates that are no single numbers.
+        """
+        own = self._scalars()
+        given = _messages(messages, len(own), 2)
+        heard = np.isfinite(given[..., 0])
+        np.fill_diagonal(heard, False)
+        self._silent = np.where(heard, 1, self._silent + 1)
+        theirs, degree = np.where(heard, given[..., 0], 0.0), np.where(heard, given[..., 1], 0.0)
+        weights = heard / (1.0 + np.maximum(degree, self._told[:, None]))
+        # who has told that it hears nobody has its numbers counted from the next round on
+        weights[(degree == 0) | (self._told[:, None] == 0)] = 0.0
+        total = weights.sum(axis=1)
+        self.crowded += int((total > 1.0).sum())
+        weights /= np.maximum(total, 1.0)[:, None]
+        self.estimate = own + (weights * (theirs - own[:, None])).sum(axis=1)
+        self.rounds += 1
+        return self.estimate.copy()
+
+    def _scalars(self) -> Array:
+        if self.estimate.ndim != 1:
+            raise InvalidInputError(
+                f"robots tell one number each; got estimates of shape {self.estimate.shape}"
+            )
+        return self.estimate
+
+
+class RatioConsensus:
+    """The mean over links that lose messages: ratio consensus with running sums.
+
+    Each robot has a value and a weight, its number and 1 at first, and every round shares both
+    alike among itself and whom it heard in the round before. It tells each not the share but the sum of all
+    shares so far; who hears it after a loss takes what it missed. Nothing is ever lost for good
+    while links come back, and value over weight tends to the mean at every robot.
+
+    Source: C. N. Hadjicostis, N. H. Vaidya and A. D. Dominguez-Garcia, Robust distributed average
+    consensus via exchange of running sums, IEEE TAC 61(6), 2016; after D. Kempe, A. Dobra and
+    J. Gehrke, Gossip-based computation of aggregate information, FOCS 2003 (push-sum). Sums are
+    told by link and not by sender, so that a link that breaks holds only what it was given.
+
+    Attributes:
+        rounds: Done so far.
+    """
+
+    def __init__(self, values: ArrayLike):
+        """Begin with the robots' own numbers (n,).
+
+        Raises:
+            InvalidInputError: No such numbers.
+        """
+        n = np.size(values) if numbers(values) is not None else 0
+        own = finite(values, (n,))
+        if own is None or not n:
+            raise InvalidInputError("ratio consensus is of one finite number a robot, 1 or more")
+        self.rounds = 0
+        self._mass = np.column_stack([own, np.ones(n)])
+        self._given = np.zeros((n, n, 2))  # running sums, giver first
+        self._taken = np.zeros((n, n, 2))  # the last heard of them, taker first
+        self._links = np.zeros((n, n), dtype=bool)
+
+    @property
+    def estimate(self) -> Array:
+        """Of each robot (n,)."""
+        return self._mass[:, 0] / self._mass[:, 1]
+
+    def message(self) -> Array:
+        """Share, and what robots tell this round (n, 2 n): for each robot the sums given to it."""
+        share = self._mass / (1.0 + self._links.sum(axis=1))[:, None]
+        self._given += np.where(self._links[..., None], share[:, None], 0.0)
+        self._mass = share
+        return self._given.reshape(len(share), -1).copy()
+
+    def hear(self, messages: Any) -> Array:
+        """End a round with what was heard of it; the new estimates.
+
+        Args:
+            messages: (n, n, 2 n), receiver first; NaN where nothing was heard this
+                round.
+
+        Raises:
+            InvalidInputError: Another shape.
+        """
+        n = len(self._mass)
+        given = _messages(messages, n, 2 * n).reshape(n, n, n, 2)
+        sums = given[np.arange(n), :, np.arange(n)]  # (taker, giver, 2): those given to the taker
+        heard = np.isfinite(sums[..., 0])
+        np.fill_diagonal(heard, False)
+        self._links = heard
+        self._mass = self._mass + np.where(heard[..., None], sums - self._taken, 0.0).sum(axis=1)
+        self._taken = np.where(heard[..., None], sums, self._taken)
+        self.rounds += 1
+        return self.estimate
+
+
+def of_this_round(values: Array, sent: Array, since: float) -> Array:
+    """What a radio has of each sender (n, n, c), NaN where that was sent before ``since`` [s].
+
+    Args:
+        values: The newest of each, receiver first.
+        sent: When each was sent (n, n) [s]; NaN: never.
+        since: When this round's messages were sent.
+    """
+    with np.errstate(invalid="ignore"):
+        return np.where((sent >= since - 1e-9)[..., None], values, np.nan)
+
+
+def _messages(given: Any, n: int, columns: int) -> Array:
+    found = numbers(given)
+    if found is None or found.shape != (n, n, columns):
+        told = "no numbers" if found is None else f"shape {found.shape}"
+        raise InvalidInputError(f"messages have shape ({n}, {n}, {columns}); got {told}")
+    return found

@@ -33,6 +33,8 @@ study = Study(
                 "three",
                 "graph",
                 "agreement",
+                "moving",
+                "average",
                 "example-4.1",
                 "random-sequence",
                 "mixed-channels",
@@ -92,7 +94,33 @@ study = Study(
         Parameter("heading", "at the start", "random", ("random", "centroid")),
         Parameter("scan", "who sees nobody turns", False),
         Parameter("avoid", "barrier: a safety filter over the hands", "none", ("none", "barrier")),
-        Parameter("robots", "of experiment graph", 10, least=2),
+        Parameter(
+            "path",
+            "of experiment moving: the leader's along a line or a circle; or the formation turns "
+            "(rotate) or swings 30 % about its size (scale) round a leader's output that stands",
+            "line",
+            ("line", "circle", "rotate", "scale"),
+        ),
+        Parameter("speed", "of the leader, on line and circle", 0.2, unit="m/s", least=0.0),
+        Parameter(
+            "turn_rate", "of circle, rotate and scale", 0.1, unit="rad/s", least=0.01, most=1.0
+        ),
+        Parameter(
+            "feedforward",
+            "told: robots pass on what velocity and acceleration the formation has",
+            "none",
+            ("none", "told"),
+        ),
+        Parameter(
+            "rule",
+            "of experiment average: Metropolis weights of those heard, or ratio consensus with "
+            "running sums",
+            "metropolis",
+            ("metropolis", "ratio"),
+        ),
+        Parameter("patrol", "of experiment average: robots go round their lanes", True),
+        Parameter("reach", "of the radio, in experiment average", 2.8, unit="m", least=0.0),
+        Parameter("robots", "of experiments graph and average", 10, least=2),
         Parameter(
             "graph",
             "of experiment graph",

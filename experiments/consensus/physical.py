@@ -123,6 +123,10 @@ class Team:
             if until_agreed and self.log.spread_now <= _NEAR:
                 return
 
+    def formation(self, time: float) -> Array:
+        """Offsets (n, 2) [m] at ``time`` [s]."""
+        return self.offsets
+
     def tick(self, time: float) -> None:
         """Sense and drive at ``time`` [s]; inside of the simulation's ticks."""
         robots = self.robots
@@ -292,7 +296,7 @@ class Log:
         team = self._team
         truth, time = team.simulation.truth, team.simulation.time
         pose, twist = truth.poses(team.robots), truth.twists(team.robots)
-        self.output = hand_position(pose, HAND) - team.offsets
+        self.output = hand_position(pose, HAND) - team.formation(time)
         if not self._near():
             self.near_since = math.nan
         elif math.isnan(self.near_since):

@@ -13,6 +13,8 @@ MODES = {
     "three": ("linear", "physical"),
     "graph": ("linear", "physical"),
     "agreement": ("physical",),
+    "moving": ("physical",),
+    "average": ("physical",),
     "example-4.1": ("linear",),
     "random-sequence": ("linear",),
     "mixed-channels": ("linear",),
@@ -36,10 +38,14 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PU
     if condition["mode"] == "linear":
         return linear.trial(condition, seed, parts)
     # MuJoCo, OpenCV and OSQP are loaded by the trials that use them
-    from experiments.consensus import agreement, physical
+    from experiments.consensus import agreement, average, moving, physical
 
     if condition["experiment"] == "agreement":
         return agreement.trial(condition, seed, parts)
+    if condition["experiment"] == "moving":
+        return moving.trial(condition, seed, parts)
+    if condition["experiment"] == "average":
+        return average.trial(condition, seed)
     return physical.trial(condition, seed, parts)
 
 
