@@ -98,9 +98,10 @@ class RatioConsensus:
     """The mean over links that lose messages: ratio consensus with running sums.
 
     Each robot has a value and a weight, its number and 1 at first, and every round shares both
-    alike among itself and whom it heard in the round before. It tells each not the share but the sum of all
-    shares so far; who hears it after a loss takes what it missed. Nothing is ever lost for good
-    while links come back, and value over weight tends to the mean at every robot.
+    alike among itself and whom it heard in the round before. It tells each not the share but the
+    sum of all shares so far; who hears it after a loss takes what it missed. Nothing is lost for
+    good while links come back, and value over weight tends to the mean at every robot. Who goes out
+    of reach for ever takes along what was on its way to it.
 
     Source: C. N. Hadjicostis, N. H. Vaidya and A. D. Dominguez-Garcia, Robust distributed average
     consensus via exchange of running sums, IEEE TAC 61(6), 2016; after D. Kempe, A. Dobra and

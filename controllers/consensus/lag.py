@@ -1,11 +1,11 @@
 """How far behind a moving leader the relative form leaves its followers, from the closed loop.
 
-Followers obey p_i'' = -2 p_i' + sum_j g_ij (y_j(t - tau) - y_i) with y_i = p_i - d_i(t); the leader's
-output is the path itself. On a straight line at velocity V all outputs end on a line behind it,
-where 2 V = sum_j g_ij (lag_i - lag_j - V tau): in a chain 2 V / g + V tau a link. Where path or
-offsets turn or swing at the rate Omega, outputs do so too, with amplitudes that solve the same
-equation for s = i Omega. With velocities and accelerations told along the graph, those of what is
-told are added and the 2 V go. Derived here; the paper has no moving formation.
+Followers obey p_i'' = -2 p_i' + sum_j g_ij (y_j(t - tau) - y_i) with y_i = p_i - d_i(t); the
+leader's output is the path itself. On a straight line at velocity V all outputs end on a line
+behind it, where 2 V = sum_j g_ij (lag_i - lag_j - V tau): in a chain 2 V / g + V tau a link. Where
+path or offsets turn or swing at the rate Omega, outputs do so too, with amplitudes that solve the
+same equation for s = i Omega. With velocities and accelerations told along the graph, those of what
+is told are added and the 2 V go. Derived here; the paper has no moving formation.
 """
 
 import numpy as np

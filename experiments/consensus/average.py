@@ -97,9 +97,7 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
         aims = np.full((n, n, 2), np.nan)
         aims[np.arange(n), np.arange(n)] = point[0] - hand_position(pose, HAND)
         moves = (point[1], point[2])
-        robots.drive(
-            control.step(pose[:, 2], robots.executed, aims, np.eye(n), reference=moves)
-        )
+        robots.drive(control.step(pose[:, 2], robots.executed, aims, np.eye(n), reference=moves))
         if tick % every == 0:
             if told_at is not None:
                 service.hear(of_this_round(*radio.latest(), told_at))

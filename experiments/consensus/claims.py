@@ -6,7 +6,13 @@ the restored linear system.
 
 from typing import Any
 
-from experiments.consensus import claims_beyond, claims_physical, claims_theory, quotes
+from experiments.consensus import (
+    claims_beyond,
+    claims_moving,
+    claims_physical,
+    claims_theory,
+    quotes,
+)
 from experiments.consensus.claims_theory import EVERY, LINEAR
 from experiments.consensus.evidence import largest, least, off, off_point, off_values
 from mjmr.claims import Bound, Claim
@@ -28,6 +34,7 @@ def claims() -> list[Claim]:
         *_negatives(),
         *claims_physical.claims(),
         *claims_beyond.claims(),
+        *claims_moving.claims(),
     ]
 
 

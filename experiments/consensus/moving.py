@@ -160,9 +160,7 @@ def _passed_on(heard: Array, gains: Array) -> Array:
     return np.array([found[:, :2], found[:, 2:]])
 
 
-def trial(
-    condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED
-) -> Metrics:
+def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED) -> Metrics:
     """Errors of a formation that moves, over its last turn.
 
     Returns:

@@ -1,7 +1,7 @@
 """How much each size runs: the same experiments, with other numbers of seeds.
 
 A table of dwells, B Example 4.1, C random sequences and lemmas, D negatives, E graphs from sight,
-F noise, loss, delay and faults; barrier; scale.
+F noise, loss, delay and faults; barrier; scale; formations that move; averages by radio.
 """
 
 from typing import Any
@@ -14,6 +14,14 @@ BODY: dict[str, Any] = {"mode": "physical", "duration": 80.0}
 SEEN: dict[str, Any] = {**BODY, "sight": "rays"}
 CROSSED: dict[str, Any] = {**BODY, "side": 1.2, "places": "crossed"}
 MANY: dict[str, Any] = {"experiment": "graph"}
+MOVING: dict[str, Any] = {
+    "mode": "physical", "experiment": "moving", "schedule": "case-i", "side": 4.0,
+    "duration": 125.0,
+}  # fmt: skip
+PATHS = ("line", "circle", "rotate", "scale")
+AVERAGE: dict[str, Any] = {"mode": "physical", "experiment": "average", "robots": 8}
+STANDS: dict[str, Any] = {**AVERAGE, "patrol": False, "duration": 60.0}
+PATROLS: dict[str, Any] = {**AVERAGE, "patrol": True, "reach": 3.4, "duration": 160.0}
 GRAPHS = ("ring", "path", "star", "complete", "geometric")
 COUNTS = (3, 10, 30, 100)
 SHORT = ("star", "complete", "geometric")
@@ -37,7 +45,28 @@ def _theory(seeds: int) -> tuple[Grid, ...]:
     )
 
 
-def _large(theory: int, bodies: int, sights: int, cameras: int, crowds: int) -> tuple[Grid, ...]:
+def _moving(seeds: int) -> tuple[Grid, ...]:
+    late: dict[str, Any] = {**MOVING, "path": ("line", "circle"), "seeds": seeds}
+    return (
+        Grid(**MOVING, path=PATHS, feedforward=("none", "told"), weight=(0.2, 0.8), seeds=seeds),
+        Grid(**late, feedforward="told", loss=0.5),
+        Grid(**late, feedforward=("none", "told"), delay=0.5),
+    )
+
+
+def _averages(seeds: int) -> tuple[Grid, ...]:
+    return (
+        Grid(**STANDS, loss=(0.0, 0.5), seeds=seeds),
+        Grid(**STANDS, rule="ratio", loss=0.5, seeds=seeds),
+        Grid(**PATROLS, loss=(0.0, 0.5), seeds=seeds),
+        Grid(**PATROLS, rule="ratio", loss=0.5, seeds=seeds),
+    )
+
+
+def _large(
+    *, theory: int, bodies: int, sights: int, scans: int, cameras: int, crowds: int, moving: int,
+    averages: int,
+) -> tuple[Grid, ...]:  # fmt: skip
     return (
         *_theory(theory),
         Grid(**BODY, dwell=(2.0, 5.0, 20.0), seeds=bodies),
@@ -60,6 +89,8 @@ def _large(theory: int, bodies: int, sights: int, cameras: int, crowds: int) -> 
         # barrier
         Grid(**BODY, side=1.2, avoid="barrier", seeds=bodies),
         Grid(**CROSSED, avoid=("none", "barrier"), seeds=bodies),
+        *_moving(moving),
+        *_averages(averages),
         # scale
         Grid(**MANY, duration=20000.0, graph=GRAPHS, robots=COUNTS, seeds=crowds),
         Grid(**MANY, mode="physical", duration=120.0, graph=GRAPHS, robots=10, seeds=crowds),
@@ -81,14 +112,18 @@ QUICK = Size(
 )
 STANDARD = Size(
     "standard",
-    grids=_large(theory=100, bodies=5, sights=6, cameras=2, crowds=3),
+    grids=_large(
+        theory=100, bodies=5, sights=6, scans=6, cameras=2, crowds=3, moving=2, averages=10
+    ),
     default_seeds=5,
     expected_minutes=5.0,
     note="cameras rendered in four runs and compared with rays in three",
 )
 FULL = Size(
     "full",
-    grids=_large(theory=400, bodies=20, sights=20, cameras=10, crowds=10),
+    grids=_large(
+        theory=400, bodies=20, sights=20, scans=60, cameras=10, crowds=10, moving=5, averages=40
+    ),
     default_seeds=20,
     expected_minutes=30.0,
 )
