@@ -4,6 +4,7 @@ import dataclasses
 from pathlib import Path
 from typing import Any
 
+from experiments.consensus.moving import MovingTeam
 from experiments.consensus.physical import Team
 from mjmr.film import Film
 from mjmr.film_options import FilmOptions
@@ -16,13 +17,22 @@ _SPEED = 8.0  # times real time, unless asked otherwise
 SHOWN: tuple[tuple[str, dict[str, Any]], ...] = (
     ("graphs given, a new leader every 5 s", {}),
     ("graphs from sight, cones of 90 degrees", {"sight": "rays", "scan": True}),
-)
+    (
+        "robot 0 goes round a circle and tells its velocity",
+        {
+            "experiment": "moving", "schedule": "case-i", "path": "circle", "feedforward": "told",
+            "weight": 0.8, "side": 4.0, "duration": 80.0,
+        },
+    ),
+)  # fmt: skip
 
 
 def show(study: Study, changes: dict[str, Any], seed: int) -> Recording:
     """Run three robots in MuJoCo, with the study's choice of parts, and record them."""
     parts = Parts(study.parts, study.chosen)
-    team = Team(study.condition(mode="physical", **changes), seed, parts)
+    condition = study.condition(mode="physical", **changes)
+    kind = MovingTeam if condition["experiment"] == "moving" else Team
+    team = kind(condition, seed, parts)
 
     def caption() -> str:
         hears = [

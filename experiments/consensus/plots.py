@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from experiments.consensus import plots_moving
 from mjmr import statistics
 from mjmr.conditions import format_value
 from mjmr.plot import edge_rows, figure, interval_line
@@ -35,7 +36,7 @@ def plots(table: Table, folder: Path) -> list[Path]:
     crowds = table.where(experiment="graph")
     if crowds.finished:
         made.append(_growth(crowds, folder / "time-to-agreement.svg"))
-    return made
+    return [*made, *plots_moving.plots(table, folder)]
 
 
 def series(metrics: Any) -> tuple[Array, NDArray[np.bool_]]:

@@ -81,7 +81,9 @@ def _large(
         Grid(**BODY, noise=0.05, loss=0.5, delay=0.5, seeds=bodies),
         Grid(**BODY, fault=("follower-dies", "leader-freezes"), seeds=bodies),
         # E
-        Grid(**SEEN, cone_deg=(60.0, 90.0, 120.0), scan=(False, True), seeds=sights),
+        Grid(**SEEN, cone_deg=(60.0, 90.0), scan=False, seeds=sights),
+        Grid(**SEEN, cone_deg=120.0, scan=False, seeds=max(sights, scans // 2)),
+        Grid(**SEEN, cone_deg=(60.0, 90.0, 120.0), scan=True, seeds=scans),
         Grid(**SEEN, cone_deg=(90.0, 120.0), heading="centroid", seeds=sights),
         Grid(**BODY, sight="camera", cone_deg=(90.0, 120.0), scan=True, seeds=cameras),
         Grid(**BODY, experiment="agreement", cone_deg=(60.0, 90.0, 120.0), scan=True,
@@ -105,19 +107,21 @@ QUICK = Size(
         Grid(**BODY, seeds=1),
         Grid(**BODY, noise=0.05, seeds=1),
         Grid(**SEEN, scan=True, seeds=1),
+        Grid(**MOVING, feedforward="told", seeds=1),
+        Grid(**STANDS, seeds=1),
     ),
     default_seeds=1,
     expected_minutes=0.3,
-    note="the linear model in full but for 10 random sequences; three runs in MuJoCo",
+    note="the linear model in full but for 10 random sequences; five runs in MuJoCo",
 )
 STANDARD = Size(
     "standard",
     grids=_large(
-        theory=100, bodies=5, sights=6, scans=6, cameras=2, crowds=3, moving=2, averages=10
+        theory=100, bodies=5, sights=6, scans=30, cameras=4, crowds=3, moving=2, averages=10
     ),
     default_seeds=5,
     expected_minutes=5.0,
-    note="cameras rendered in four runs and compared with rays in three",
+    note="cameras rendered in eight runs and compared with rays in six",
 )
 FULL = Size(
     "full",
