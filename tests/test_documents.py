@@ -97,6 +97,24 @@ def test_the_barrier_takes_other_studies_roles_and_another_filter_takes_its(tmp_
 
 
 @pytest.mark.slow
+def test_the_page_on_consensus_finds_its_mean_and_swaps_its_gains(tmp_path):
+    page = ROOT / "docs" / "consensus.md"
+    write_files(page, tmp_path)
+    done = run([sys.executable, "mean.py"], tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == blocks(page, "text")[0]
+    (shell,) = [b for b in blocks(page, "sh") if "--with" in b]
+    run_shell(f"{shell.rstrip()} --out found.json", tmp_path)
+    found = json.loads((tmp_path / "found.json").read_text())
+    assert found["pairs"] == 8
+    (near,) = found["metrics"]
+    assert near["a"] == pytest.approx(63, abs=0.6)
+    assert near["b"] == pytest.approx(23, abs=0.6)
+    lines = [line for line in (tmp_path / "half.py").read_text().splitlines() if line.strip()]
+    assert len(lines) <= 15
+
+
+@pytest.mark.slow
 def test_the_page_on_adding_a_system_runs(tmp_path):
     page = ROOT / "docs" / "add-a-system.md"
     write_files(page, tmp_path)

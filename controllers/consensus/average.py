@@ -112,26 +112,40 @@ class RatioConsensus:
         rounds: Done so far.
     """
 
-    def __init__(self, values: ArrayLike):
-        """Begin with the robots' own numbers (n,).
+    def __init__(self, values: ArrayLike, weights: ArrayLike | None = None):
+        """Begin with the robots' own numbers.
+
+        Args:
+            values: (n,).
+            weights: Of each in the mean (n,), 0 or more; None: all alike.
 
         Raises:
             InvalidInputError: No such numbers.
         """
         n = np.size(values) if numbers(values) is not None else 0
-        own = finite(values, (n,))
-        if own is None or not n:
+        if finite(values, (n,)) is None or not n:
             raise InvalidInputError("ratio consensus is of one finite number a robot, 1 or more")
         self.rounds = 0
-        self._mass = np.column_stack([own, np.ones(n)])
+        self._own = _weighted(values, weights, n)
+        self._mass = self._own.copy()
         self._given = np.zeros((n, n, 2))  # running sums, giver first
         self._taken = np.zeros((n, n, 2))  # the last heard of them, taker first
         self._links = np.zeros((n, n), dtype=bool)
 
     @property
     def estimate(self) -> Array:
-        """Of each robot (n,)."""
-        return self._mass[:, 0] / self._mass[:, 1]
+        """Of each robot (n,); NaN of those no weight has come to yet."""
+        known = self._mass[:, 1] > 1e-12
+        return np.where(known, self._mass[:, 0] / np.where(known, self._mass[:, 1], 1.0), np.nan)
+
+    def replace(self, values: ArrayLike, weights: ArrayLike | None = None) -> None:
+        """Robots have other numbers or weights from now on; arguments and errors as at first.
+
+        Each puts the difference into what it has; the mean is followed as fast as rounds spread it.
+        """
+        new = _weighted(values, weights, len(self._own))
+        self._mass = self._mass + new - self._own
+        self._own = new
 
     def message(self) -> Array:
         """Share, and what robots tell this round (n, 2 n): for each robot the sums given to it."""
@@ -172,6 +186,16 @@ def of_this_round(values: Array, sent: Array, since: float) -> Array:
     """
     with np.errstate(invalid="ignore"):
         return np.where((sent >= since - 1e-9)[..., None], values, np.nan)
+
+
+def _weighted(values: ArrayLike, weights: ArrayLike | None, n: int) -> Array:
+    own, share = finite(values, (n,)), finite(np.ones(n) if weights is None else weights, (n,))
+    if own is None or share is None or (share < 0).any():
+        raise InvalidInputError(
+            f"values and weights are {n} finite numbers each, weights 0 or more; got {values} and "
+            f"{weights}"
+        )
+    return np.column_stack([own * share, share])
 
 
 def _messages(given: Any, n: int, columns: int) -> Array:

@@ -66,6 +66,22 @@ def test_a_ratio_takes_what_it_missed_when_a_link_comes_back():
     )
 
 
+def test_weights_count_and_numbers_may_change():
+    weights = np.array([0.0, 2.0, 0.0, 1.0, 0.0])
+    service = RatioConsensus(VALUES, weights)
+    assert np.isnan(service.estimate).tolist() == [True, False, True, False, True]
+    mean = (2 * VALUES[1] + VALUES[3]) / 3
+    assert talk(service, 300, loss=0.5).estimate == pytest.approx(np.full(5, mean), abs=1e-4)
+    service.replace(VALUES + 1.0, [0.0, 0.0, 1.0, 1.0, 0.0])
+    mean = (VALUES[2] + VALUES[3]) / 2 + 1.0
+    assert talk(service, 300, loss=0.5, seed=1).estimate == pytest.approx(
+        np.full(5, mean), abs=1e-4
+    )
+    for bad in ([1.0, 2.0], [1.0, -1.0, 0.0, 0.0, 0.0], [np.nan] * 5):
+        with pytest.raises(InvalidInputError, match="5 finite numbers each, weights 0 or more"):
+            service.replace(VALUES, bad)
+
+
 def test_nobody_is_heard_and_nothing_changes():
     nobody = np.zeros((5, 5), dtype=bool)
     for kind in (AverageConsensus, RatioConsensus):
