@@ -56,9 +56,8 @@ class Patrol:
         angle, rate = self._rate * time + self._phase, self._rate[:, None]
         c, s = np.cos(angle), np.sin(angle)
         on = np.column_stack([c, s]) * _HALF
-        return np.array(
-            [self._middle + on, rate * np.column_stack([-s, c]) * _HALF, -(rate**2) * on]
-        )
+        moves = rate * np.column_stack([-s, c]) * _HALF
+        return np.array([self._middle + on, moves, -(rate**2) * on], dtype=np.float64)
 
 
 def trial(condition: Mapping[str, Any], seed: int) -> Metrics:

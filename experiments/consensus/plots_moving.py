@@ -1,13 +1,15 @@
 """Plots of what moves: how far followers are from their places, and what averages end with."""
 
+from collections.abc import Mapping
 from pathlib import Path as File
+from typing import Any
 
 import numpy as np
 
 from experiments.consensus.linear import START
 from experiments.consensus.moving import Path
 from mjmr.plot import figure
-from mjmr.table import Row, Table
+from mjmr.table import Table
 
 
 def plots(table: Table, folder: File) -> list[File]:
@@ -22,7 +24,7 @@ def plots(table: Table, folder: File) -> list[File]:
     return made
 
 
-def _done(rows: Table) -> list[Row]:
+def _done(rows: Table) -> list[Any]:
     return [row for row in rows.rows if row.status == "ok"]
 
 
@@ -34,8 +36,8 @@ def _followed(rows: Table, path: File) -> File:
             if row is None:
                 continue
             y = np.array([float(v) for v in row.metrics["outputs"].split()]).reshape(-1, 3, 2)
-            way = Path(condition["path"], START[0], condition["speed"], condition["turn_rate"],
-                       np.zeros((3, 2)))  # fmt: skip
+            c: Mapping[str, Any] = row.condition
+            way = Path(c["path"], START[0], c["speed"], c["turn_rate"], np.zeros((3, 2)))
             at = np.array([way.point(float(t))[0] for t in range(len(y))])
             away = np.linalg.norm(y - at[:, None], axis=2)
             known = "told" if condition["feedforward"] == "told" else "law alone"
