@@ -116,7 +116,7 @@ class MovingTeam(Team):
         )  # fmt: skip
         times = np.linspace(0.0, condition["duration"], 200)
         way = np.array([self.path.point(float(t))[0] for t in times])
-        room = 4.0 + 2.0 * np.hypot(*offsets.T).max()
+        room = 1.5 + (1.0 + SWING) * np.hypot(*offsets.T).max()
         low = np.minimum(way.min(axis=0), start.min(axis=0)) - room
         return start, offsets, (*low, *(np.maximum(way.max(axis=0), start.max(axis=0)) + room))
 

@@ -9,6 +9,7 @@ from experiments.consensus import study
 from experiments.consensus.average import Patrol
 from experiments.consensus.claims import claims
 from experiments.consensus.moving import PATHS, MovingTeam, Path
+from experiments.consensus.plots import plots
 from experiments.consensus.trial import trial
 from mjmr.claims import judge
 from mjmr.errors import InvalidInputError, TruthError
@@ -128,6 +129,17 @@ def test_one_bad_run_fails_a_claim(name, given, good, bad):
 
     assert verdict(good, good, good) == "holds"
     assert verdict(good, bad, good) == "fails"
+
+
+def test_plots_show_what_ran(tmp_path):
+    rows = []
+    for given in ({**MOVING, "weight": 0.2}, {**AVERAGE, "duration": 3.0}):
+        condition = study.condition(**given)
+        rows.append(Row(condition, 0, "ok", trial(condition, 1000)))
+    made = plots(Table(rows, study.parameters), tmp_path)
+    assert [path.name for path in made] == ["moving.svg", "average-bias.svg"]
+    assert "line, law alone" in made[0].read_text()
+    assert plots(Table([], study.parameters), tmp_path) == []
 
 
 def test_a_bias_that_is_large_in_the_mean_decides():
