@@ -117,10 +117,10 @@ QUICK = Size(
 STANDARD = Size(
     "standard",
     grids=_large(
-        theory=100, bodies=5, sights=6, scans=30, cameras=4, crowds=3, moving=2, averages=10
+        theory=100, bodies=8, sights=6, scans=30, cameras=4, crowds=3, moving=2, averages=10
     ),
     default_seeds=5,
-    expected_minutes=5.0,
+    expected_minutes=12.0,
     note="cameras rendered in eight runs and compared with rays in six",
 )
 FULL = Size(
@@ -129,5 +129,5 @@ FULL = Size(
         theory=400, bodies=20, sights=20, scans=60, cameras=10, crowds=10, moving=5, averages=40
     ),
     default_seeds=20,
-    expected_minutes=30.0,
+    expected_minutes=50.0,
 )
