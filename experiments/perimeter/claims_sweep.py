@@ -6,8 +6,8 @@ from experiments.perimeter.sizes import COUNTS, LONG, ROOMY, TIGHT
 from mjmr.claims import Bound, Claim
 
 _SWEPT = {**STAY, "mode": "unicycle"}
-_SHORT = "unicycle bodies, static disc of 10 m, 600 s from a bunch"
-_LONG = f"unicycle bodies, static disc of 10 m, {LONG:g} s from a bunch"
+_SHORT = "unicycle bodies, 600 s from a bunch on a static disc"
+_LONG = f"unicycle bodies, {LONG:g} s from a bunch on a static disc"
 
 
 def swept() -> list[Claim]:
@@ -17,8 +17,8 @@ def swept() -> list[Claim]:
         Claim(
             id="sweep-low-does-not-surround",
             text="if d_des is too low, the swarm will not surround the perimeter",
-            how=f"{_SHORT}; five robots, d_des of {_listed(TIGHT)} chords: trials that end unevenly and "
-            "stopped",
+            how=f"{_SHORT}; five robots, d_des of {_listed(TIGHT)} chords: trials that end unevenly "
+            "and stopped",
             bound=Bound(">=", 100.0),
             unit="%",
             needs={**_SWEPT, "factor": TIGHT},
@@ -36,8 +36,8 @@ def swept() -> list[Claim]:
         Claim(
             id="sweep-high-surrounds-and-moves",
             text="if d_des is too high, the swarm will surround the perimeter, but continue moving",
-            how=f"{_SHORT}; five robots, d_des of {_listed(ROOMY)} chords: trials that end evenly, and "
-            "not stopped",
+            how=f"{_SHORT}; five robots, d_des of {_listed(ROOMY)} chords: trials that end evenly, "
+            "and not stopped",
             bound=Bound(">=", 100.0),
             unit="%",
             needs={**_SWEPT, "factor": ROOMY},
@@ -46,8 +46,8 @@ def swept() -> list[Claim]:
         Claim(
             id="sweep-robots",
             text="the swarm will reconfigure until the perimeter is uniformly surrounded",
-            how=f"{_LONG}; {_listed(COUNTS)} robots, d_des of 1 - .05 / (N - 1) chords: trials that end "
-            "evenly and stopped (two are exempt: no chord is longer than the diameter)",
+            how=f"{_LONG}; {_listed(COUNTS)} robots, d_des of 1 - .05 / (N - 1) chords: trials that "
+            "end evenly and stopped (two are exempt: no chord is longer than the diameter)",
             bound=Bound(">=", 100.0),
             unit="%",
             needs={**_SWEPT, "robots": COUNTS, "duration": LONG},
