@@ -17,8 +17,8 @@ def swept() -> list[Claim]:
         Claim(
             id="sweep-low-does-not-surround",
             text="if d_des is too low, the swarm will not surround the perimeter",
-            how=f"{_SHORT}; five robots, d_des of {_listed(TIGHT)} chords: trials that end unevenly "
-            "and stopped",
+            how=f"{_SHORT}; five robots, d_des of {_listed(TIGHT)} chords: trials that end "
+            "unevenly and stopped",
             bound=Bound(">=", 100.0),
             unit="%",
             needs={**_SWEPT, "factor": TIGHT},
@@ -46,8 +46,8 @@ def swept() -> list[Claim]:
         Claim(
             id="sweep-robots",
             text="the swarm will reconfigure until the perimeter is uniformly surrounded",
-            how=f"{_LONG}; {_listed(COUNTS)} robots, d_des of 1 - .05 / (N - 1) chords: trials that "
-            "end evenly and stopped (two are exempt: no chord is longer than the diameter)",
+            how=f"{_LONG}; {_listed(COUNTS)} robots, d_des of 1 - .05 / (N - 1) chords: trials "
+            "that end evenly and stopped (two are exempt: no chord is longer than the diameter)",
             bound=Bound(">=", 100.0),
             unit="%",
             needs={**_SWEPT, "robots": COUNTS, "duration": LONG},
