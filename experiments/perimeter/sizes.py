@@ -11,6 +11,7 @@ SIXTH = 1.0  # of the chord of six: d_des is not below it, and they may stop
 LATER = 660.0  # s: 60 s, then 600 s to be even again
 AFTERWARDS = "after quick's seed 0 and half a standard run had been seen"  # of claims, on them
 PATHS = ("straight", "circle", "eight")
+MIDDLE = ("eight-middle", "eight-smooth-middle")  # where no wall is in the way
 SWEEP = (0.6, 0.7, 0.8, 0.9, 0.95, 1.0, 1.05, 1.1, 1.2, 1.3, 1.4)
 RANGES = (0.0, 10.0, 25.0, 150.0)  # m, of the radio
 
@@ -51,6 +52,8 @@ def grids(join: int, few: int, sweep: int) -> tuple[Grid, ...]:
         Grid(task="formation", path=PATHS, heard="plain", seeds=few),
         Grid(task="envelope", seeds=few),
         Grid(**JOIN, mode="unicycle", d_com=RANGES, seeds=sweep),
+        Grid(task="formation", path=MIDDLE, seeds=few),
+        Grid(task="formation", path=MIDDLE[0], heard="plain", seeds=few),
     )  # fmt: skip
 
 
