@@ -80,15 +80,18 @@ study = Study(
         Parameter(
             "path",
             "of the leader (formation); circle and eight begin at once, as does the eight's change "
-            "of side; eight-smooth: curvature without jumps",
+            "of side, and runs into a wall; eight-smooth: curvature without jumps; -middle: where "
+            "no wall is in the way",
             "straight",
-            ("straight", "circle", "eight", "eight-smooth"),
+            ("straight", "circle", "eight", "eight-smooth", "eight-middle", "eight-smooth-middle"),
         ),
         Parameter(
             "heard",
-            "of the leader (formation), a tick old: moved on by the speeds told with it, or plain",
+            "of the leader (formation), a tick old: moved on by the speeds told with it, or plain; "
+            "nothing: followers see two poles on the leader with a camera, by which they estimate "
+            "its speeds",
             "extrapolated",
-            ("extrapolated", "plain"),
+            ("extrapolated", "plain", "nothing"),
         ),
         Parameter(
             "dt_ms", "largest physics timestep; it divides 0.1 s", 10.0, unit="ms", least=0.1

@@ -5,10 +5,17 @@ import pytest
 
 from experiments.perimeter import study
 from experiments.perimeter.checks import check
-from experiments.perimeter.formation import _turn
+from experiments.perimeter.formation import (
+    HALF_LONG,
+    HALF_WIDE,
+    SEPARATION,
+    _turn,
+    start_of,
+)
 from experiments.perimeter.trial import trial
 from experiments.perimeter.worlds import build
 from mjmr.cli import main
+from mjmr.robots.tamiya_txt1 import TamiyaTXT1
 
 BAD = [
     ("radius=60", "the largest has 34 m"),
@@ -24,6 +31,7 @@ BAD = [
     ("start=even robots=19", "at most 18 do"),
     ("task=envelope duration=30", "does not read duration"),
     ("task=formation failure=radio", "does not read failure"),
+    ("task=formation heard=nothing d_com=10", "have no radio"),
     ("path=circle", "does not read path"),
     ("sensing=camera wrong=0.2", "wrong is of readings of the ray"),
 ]
@@ -83,6 +91,11 @@ def test_who_hears_plainly_and_who_moves_it_on_are_two_laws():
     assert errors[0]["place_rms_m"] < errors[1]["place_rms_m"] < 0.3
 
 
+def test_who_hears_nothing_follows_what_its_camera_sees():
+    condition = study.condition(task="formation", path="circle", heard="nothing", duration=33.0)
+    assert trial(condition, 1000)["place_rms_m"] < 0.1
+
+
 def test_the_eight_changes_sides_at_once_and_the_smooth_one_does_not():
     times = np.arange(0.0, 160.0, 0.1)
     sharp, smooth, circle = (
@@ -92,3 +105,18 @@ def test_the_eight_changes_sides_at_once_and_the_smooth_one_does_not():
     assert np.abs(np.diff(smooth)).max() < 0.003
     assert np.abs(smooth).max() == pytest.approx(0.08)
     assert set(np.unique(circle)) == {0.0, 0.08}
+
+
+@pytest.mark.parametrize(
+    ("name", "fits"),
+    [("circle", True), ("eight", False), ("eight-middle", True), ("eight-smooth-middle", True)],
+)
+def test_paths_in_the_middle_keep_leader_and_followers_off_the_walls(name, fits):
+    path, (x, y, yaw) = start_of(name)
+    track = []
+    for now in np.arange(0.0, 160.0, 0.1):
+        yaw += 0.1 * _turn(path, now)
+        x, y = x + 0.08 * np.cos(yaw), y + 0.08 * np.sin(yaw)
+        track.append((x, y))
+    room = np.array([HALF_LONG, HALF_WIDE]) - np.abs(track).max(axis=0)
+    assert (room.min() > SEPARATION + TamiyaTXT1.radius) == fits
