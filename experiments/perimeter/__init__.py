@@ -49,6 +49,21 @@ study = Study(
             "rays",
             ("rays", "camera", "both"),
         ),
+        Parameter(
+            "obstacles",
+            "by what whoever is near is found. fan: 72 rays around that know trucks from walls; "
+            "sonars: eight cones ahead at 5 Hz, less the known walls and what the camera knows as "
+            "red",
+            "fan",
+            ("fan", "sonars"),
+        ),
+        Parameter(
+            "localization",
+            "localizer: poses with noise; odometry: the counts of the rear wheels, from the known "
+            "start; odometry-compass: the counts for the way, a compass for the heading",
+            "localizer",
+            ("localizer", "odometry", "odometry-compass"),
+        ),
         Parameter("robots", "how many", 5, least=1),
         Parameter("radius", "of the spill at time 0", 10.0, unit="m", least=0.6),
         Parameter("growth", "of its radius", 0.0, unit="m/s"),
