@@ -62,6 +62,7 @@ class Avoidance:
         self.waiting = np.zeros(n)
         self.side = np.zeros(n)
         self._clear = np.full(n, np.inf)  # s, since somebody ahead was last in the way
+        self._unseen = np.zeros((n, n))  # s, for which one told of ahead has not been seen
 
     def apply(
         self, command: Array, heading: Array, edge: Array, state: NDArray[np.int64],
@@ -78,8 +79,25 @@ class Avoidance:
             body: Nearest robot seen (n, 2) [m], own frame; one that is not known by radio counts as
                 somebody ahead whose rank is unknown.
         """
+        self._disbelieve(near, body)
         found = self._rule(command, state, near)
         return self._guard(found, heading, edge, state, near, body)
+
+    def _disbelieve(self, near: Neighbours, body: Array) -> None:
+        """Whoever is said to be ahead and is not seen there for long does not count (ours).
+
+        Poses that drift put others where they are not, for good if both stand.
+        """
+        c = self._config
+        if np.isinf(c.doubt):
+            return
+        apart, bearing = np.hypot(*body.T), np.arctan2(body[:, 1], body[:, 0])
+        with np.errstate(invalid="ignore"):
+            seen = (apart < c.guard_radius) & (np.abs(bearing) < c.guard_angle)
+            told = (near.apart < c.guard_radius) & (np.abs(near.bearing) < c.guard_angle)
+        unseen = told & ~seen[:, None]
+        self._unseen = np.where(unseen, self._unseen + c.period, 0.0)
+        near.apart = np.where(self._unseen > c.doubt, np.nan, near.apart)
 
     def _rule(self, command: Array, state: NDArray[np.int64], near: Neighbours) -> Array:
         """Rule 3, while searching and approaching.

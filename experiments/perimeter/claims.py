@@ -8,6 +8,7 @@ import numpy as np
 
 from experiments.perimeter.claims_beyond import beyond
 from experiments.perimeter.claims_later import later
+from experiments.perimeter.claims_senses import senses
 from experiments.perimeter.conditions import DRIVEN, JOIN, LITERAL, N1, STAY
 from experiments.perimeter.evidence import (
     both,
@@ -35,6 +36,7 @@ def claims() -> list[Claim]:
         *_failures(),
         *beyond(),
         *later(),
+        *senses(),
     ]
 
 

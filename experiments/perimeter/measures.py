@@ -75,7 +75,7 @@ class Log:
         self._states.append(team.state.copy())
         self._drift.see()
         entering = (team.state == MOVING) & np.isnan(team.joined)
-        self._hops = np.where(entering, np.maximum(self._hops, team.relay.hops), self._hops)
+        self._hops = np.where(entering, np.maximum(self._hops, team.hops), self._hops)
         if self._condition["sensing"] == "both":
             self._compare()
 

@@ -15,13 +15,14 @@ SWEEP = (0.6, 0.7, 0.8, 0.9, 0.95, 1.0, 1.05, 1.1, 1.2, 1.3, 1.4)
 RANGES = (0.0, 10.0, 25.0, 150.0)  # m, of the radio
 
 
-def grids(join: int, few: int, sweep: int) -> tuple[Grid, ...]:
+def grids(join: int, few: int, sweep: int, senses: int = 5) -> tuple[Grid, ...]:
     """Conditions of a size that decides claims.
 
     Args:
         join: Seeds of the trials in which a team finds a spill.
         few: Seeds of everything else.
         sweep: Seeds of the sweeps on unicycle bodies.
+        senses: Seeds of the trials in which trucks with other senses find a spill.
     """
     return (
         Grid(**JOIN, seeds=join),
@@ -51,6 +52,10 @@ def grids(join: int, few: int, sweep: int) -> tuple[Grid, ...]:
         Grid(task="formation", path=PATHS, heard="plain", seeds=few),
         Grid(task="envelope", seeds=few),
         Grid(**JOIN, mode="unicycle", d_com=RANGES, seeds=sweep),
+        Grid(**JOIN, obstacles="sonars", localization=("localizer", "odometry"), seeds=senses),
+        Grid(**JOIN, localization=("odometry", "odometry-compass"), seeds=senses),
+        Grid(**STAY, obstacles="sonars", localization=("localizer", "odometry"), seeds=few),
+        Grid(**STAY, localization="odometry", seeds=few),
     )  # fmt: skip
 
 
@@ -70,7 +75,7 @@ STANDARD = Size("standard", grids=grids(20, 3, 8), default_seeds=3, expected_min
 FULL = Size(
     "full",
     grids=(
-        *grids(60, 10, 20),
+        *grids(60, 10, 20, 10),
         Grid(**STAY, mode="unicycle", factor=SWEEP, seeds=5),
         Grid(**STAY, mode="unicycle", robots=(2, 3, 4, 6, 7, 8), seeds=5),
     ),
