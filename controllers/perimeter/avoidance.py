@@ -84,14 +84,19 @@ class Avoidance:
         return self._guard(found, heading, edge, state, near, body)
 
     def _disbelieve(self, near: Neighbours, body: Array) -> None:
-        """Whoever is said to be ahead and is not seen there for long does not count (ours).
+        """Whoever is seen is where it is seen, and who is told of ahead but not seen is not (ours).
 
         Poses that drift put others where they are not, for good if both stand.
         """
-        c = self._config
+        c, rows = self._config, np.arange(len(body))
         if np.isinf(c.doubt):
             return
         apart, bearing = np.hypot(*body.T), np.arctan2(body[:, 1], body[:, 0])
+        off = np.nan_to_num(self._off(near, body), nan=np.inf)
+        same = np.argmin(off, axis=1)
+        found = rows[off[rows, same] < c.same]
+        near.apart[found, same[found]] = apart[found] + c.reach
+        near.bearing[found, same[found]] = bearing[found]
         with np.errstate(invalid="ignore"):
             seen = (apart < c.guard_radius) & (np.abs(bearing) < c.guard_angle)
             told = (near.apart < c.guard_radius) & (np.abs(near.bearing) < c.guard_angle)
@@ -212,8 +217,13 @@ class Avoidance:
     def _somebody(self, near: Neighbours, body: Array) -> tuple[Array, Array]:
         """Distance [m] and bearing (n,) of who is seen but not told of by radio; NaN: nobody."""
         apart, bearing = np.hypot(*body.T), np.arctan2(body[:, 1], body[:, 0])
+        with np.errstate(invalid="ignore"):
+            told = (self._off(near, body) < self._config.same).any(axis=1)
+        return np.where(told, np.nan, apart), bearing
+
+    @staticmethod
+    def _off(near: Neighbours, body: Array) -> Array:
+        """How far others are told to be (n, n) from the one that is seen (n, 2) [m]."""
         x = near.apart * np.cos(near.bearing) - body[:, :1]
         y = near.apart * np.sin(near.bearing) - body[:, 1:]
-        with np.errstate(invalid="ignore"):
-            told = (np.hypot(x, y) < self._config.same).any(axis=1)
-        return np.where(told, np.nan, apart), bearing
+        return np.hypot(x, y)

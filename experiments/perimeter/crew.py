@@ -19,10 +19,6 @@ class Crew:
     if it is there; otherwise ``joined`` and ``told`` follow from the states, ``sensed`` is when one
     first had the perimeter in range, nobody counts hops, and d_des is not known.
 
-    Attributes:
-        joined: When each first tracked (n,) [s], NaN: not yet.
-        told: Who was ever MOVING before it first tracked (n,).
-        sensed: When each first sensed a perimeter (n,) [s], NaN: not yet.
     """
 
     def __init__(self, team: Any, n: int):
@@ -51,7 +47,7 @@ class Crew:
         self._sensed = np.where(seen, now.time, self._sensed)
         return command
 
-    def speak(self, now: Percepts) -> Array | None:
+    def speak(self, now: Percepts) -> NDArray[np.float32] | None:
         """What is broadcast (n, c); None of a team that does not speak.
 
         Raises:
@@ -83,18 +79,21 @@ class Crew:
     @property
     def state(self) -> NDArray[np.int64]:
         """Of each robot (n,), index into ``STATES``."""
-        return self._team.state
+        return np.asarray(self._team.state)
 
     @property
     def joined(self) -> Array:
+        """When each first tracked (n,) [s], NaN: not yet."""
         return getattr(self._team, "joined", self._joined)
 
     @property
     def told(self) -> NDArray[np.bool_]:
+        """Who was ever MOVING before it first tracked (n,)."""
         return getattr(self._team, "told", self._told)
 
     @property
     def sensed(self) -> Array:
+        """When each first sensed a perimeter (n,) [s], NaN: not yet."""
         return getattr(self._team, "sensed", self._sensed)
 
     @property
@@ -109,8 +108,9 @@ class Crew:
 
     def _check(self) -> None:
         state = getattr(self._team, "state", None)
-        good = isinstance(state, np.ndarray) and state.shape == (self._n,)
-        if not (good and state.dtype.kind in "iu" and ((state >= 0) & (state < len(STATES))).all()):
+        found = np.asarray(() if state is None else state)
+        whole = found.shape == (self._n,) and found.dtype.kind in "iu"
+        if not (whole and ((found >= 0) & (found < len(STATES))).all()):
             told = "none" if state is None else repr(state)
             raise InvalidInputError(
                 f"a team has an attribute state: an array of {self._n} whole numbers from 0 to "

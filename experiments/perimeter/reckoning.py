@@ -14,9 +14,6 @@ class Reckoning:
     """Poses from the starting pose, which is known, and all that the wheels have counted since.
 
     With a compass the headings are its own, and the counts say only how far it went.
-
-    Attributes:
-        poses: Newest estimate (n, 3) [m, m, rad], world frame.
     """
 
     def __init__(self, scene: Any):
@@ -33,6 +30,7 @@ class Reckoning:
 
     @property
     def poses(self) -> Array:
+        """Newest estimate (n, 3) [m, m, rad], world frame."""
         return self._odometry.poses
 
     def step(self, counts: Array, heading: Array | None = None) -> Array:

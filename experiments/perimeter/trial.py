@@ -18,7 +18,8 @@ from mjmr.kinematics import KinematicSimulation
 from mjmr.parts import Parts
 
 PERIOD = 0.1
-DOUBT = 10.0  # s, for which own sensors must deny what others say of themselves, if poses drift
+# poses that drift put others metres away from where they are, and own sensors know better
+DRIFTING = {"same": 3.0, "doubt": 10.0}  # m, s
 SETTLED = 90.0  # s, that a trial of joining goes on after the last truck joined
 Metrics = dict[str, Any]
 
@@ -87,7 +88,7 @@ def configuration(condition: Mapping[str, Any]) -> PerimeterConfig:
         desired=desired,
         factor=factor,
         spacing=condition["spacing"],
-        doubt=float("inf") if condition["localization"] == "localizer" else DOUBT,
+        **({} if condition["localization"] == "localizer" else DRIFTING),
     )
 
 

@@ -124,7 +124,9 @@ def drive_at_one_who_stands(unplug):
     on, nearest = np.array([True, False]), np.inf
     apart: list[float] = []
     simulation.observe(
-        lambda: apart.append(float(np.hypot(*np.subtract(*simulation.truth.poses(scene.trucks)[:, :2]))))
+        lambda: apart.append(
+            float(np.hypot(*np.subtract(*simulation.truth.poses(scene.trucks)[:, :2])))
+        )
     )
     for now in simulation.ticks(15.0):
         known = bus.look(now, on)
@@ -151,9 +153,7 @@ def test_devices_have_identifiers_of_their_own():
 
 
 def test_who_loses_its_odometer_does_not_know_where_it_is_until_it_has_it_again():
-    simulation, scene, bus = set_up(
-        [[0.0, 0.0, 0.0], [0.0, 9.0, 0.0]], localization="odometry"
-    )
+    simulation, scene, bus = set_up([[0.0, 0.0, 0.0], [0.0, 9.0, 0.0]], localization="odometry")
     told, on = [], np.ones(2, dtype=bool)
     for now in simulation.ticks(6.0):
         known = bus.look(now, on)

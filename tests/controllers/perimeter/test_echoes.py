@@ -56,7 +56,9 @@ def test_red_counts_in_the_cones_that_look_at_it():
     looks = np.array([[[2.0, RED], [2.5, RED], [1.0, RED]]])
     at = np.array([0.24, 0.0, 0.0])
     left, right = kind_in_cones(looks, angles, RED, at, PAIR, WIDTH, 3.0)[0]
-    assert left == pytest.approx(np.hypot(2.5 * np.cos(angles[1]) - 0.16, 2.5 * np.sin(angles[1]) - 0.1))
+    assert left == pytest.approx(
+        np.hypot(2.5 * np.cos(angles[1]) - 0.16, 2.5 * np.sin(angles[1]) - 0.1)
+    )
     assert np.isinf(right)
     looks[..., 1] = 2  # a truck
     assert np.isinf(kind_in_cones(looks, angles, RED, at, PAIR, WIDTH, 3.0)).all()

@@ -378,3 +378,20 @@ def test_who_is_told_of_ahead_and_is_not_seen_there_is_doubted_if_poses_drift(do
     for _ in range(100):
         told = avoidance.apply(wanted, np.zeros(2), NO_EDGE, state, neighbours(pose, state), body)
     assert (told[0, 0] > 0.0) == bool(goes)
+
+
+def test_who_is_seen_is_where_it_is_seen_if_poses_drift():
+    """Told to be 2.2 m to the left, seen ahead: one does not drive into it."""
+    pose = np.array([[0.0, 0.0, 0.0], [0.5, 2.2, 1.0]])
+    body, state = np.array([[0.9, 0.0], [np.nan, np.nan]]), np.array([ACQUIRE, TRACKING])
+    wanted = np.array([[0.4, 0.0], [0.0, 0.0]])
+    for given in ({"same": 3.0, "doubt": 10.0}, {}):
+        avoidance = Avoidance(2, PerimeterConfig(bounds=BOUNDS, **given))
+        known = neighbours(pose, state)
+        told = avoidance.apply(wanted, np.zeros(2), NO_EDGE, state, known, body)
+        assert told[0].tolist() == [0.0, 0.0]
+        if given:
+            assert known.apart[0, 1] == pytest.approx(1.3)
+            assert known.bearing[0, 1] == 0.0
+        else:
+            assert known.apart[0, 1] == pytest.approx(np.hypot(0.5, 2.2))
