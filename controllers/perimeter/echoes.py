@@ -42,7 +42,7 @@ def wall_ranges(
 def kind_in_cones(
     looks: Array, angles: Array, kind: int, at: Array, mounts: Array, width: float, reach: float
 ) -> Array:
-    """Nearest return of one kind of a fan of rays within every cone (n, k) [m], from the cone's tip.
+    """Nearest return of one kind of a fan of rays in every cone (n, k) [m], from the cone's tip.
 
     Args:
         looks: Range [m] and kind of every ray (n, c, 2).

@@ -8,7 +8,7 @@ were written after trials of seeds from 1000 on had been seen, and before any ot
 from collections.abc import Mapping
 from typing import Any
 
-from experiments.perimeter.conditions import JOIN, STAY
+from experiments.perimeter.conditions import JOIN, PLAIN, STAY
 from experiments.perimeter.evidence import (
     both,
     extreme,
@@ -34,6 +34,9 @@ SENSES: dict[str, tuple[Mapping[str, Any], str]] = {
         "as odometry, headings by a compass of 0.02 rad of noise",
     ),
 }
+SEARCHED = {
+    **PLAIN, "task": "stay", "start": "scattered", "radius": 10.0, "growth": 0.0, "duration": 900.0,
+}  # fmt: skip
 DRIFTS = {"odometry": 3.0, "suite": 3.0, "compass": 0.5}  # m; 3 m is D_sen
 
 
@@ -44,6 +47,20 @@ def senses() -> list[Claim]:
         found += _joining(name, given, words)
         if name != "compass":
             found += _spreading(name, given, words)
+    for name in ("sonars", "suite"):
+        given, words = SENSES[name]
+        found.append(
+            Claim(
+                id=f"even-after-search-{name}",
+                text="the swarm will attempt to uniformly distribute around the perimeter",
+                how=f"{words}; scattered over the hall, static disc, 900 s: trials that end with "
+                "gaps within +-10 %, poses having drifted in the search if by odometers",
+                bound=Bound(">=", 100.0),
+                unit="%",
+                needs={**SEARCHED, **given},
+                evaluate=share(flags("even")),
+            )
+        )
     for name, bound in DRIFTS.items():
         given, words = SENSES[name]
         found.append(

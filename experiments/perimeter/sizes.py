@@ -56,6 +56,10 @@ def grids(join: int, few: int, sweep: int, senses: int = 5) -> tuple[Grid, ...]:
         Grid(**JOIN, localization=("odometry", "odometry-compass"), seeds=senses),
         Grid(**STAY, obstacles="sonars", localization=("localizer", "odometry"), seeds=few),
         Grid(**STAY, localization="odometry", seeds=few),
+        Grid(
+            task="stay", start="scattered", obstacles="sonars",
+            localization=("localizer", "odometry"), seeds=few,
+        ),
     )  # fmt: skip
 
 

@@ -217,6 +217,6 @@ def test_a_team_by_odometry_errs_as_odometry_does():
 
 def test_every_new_claim_has_bounds_called_ours_and_other_conditions_than_the_old_ones():
     told = senses()
-    assert len({c.id for c in told}) == len(told) == 25
+    assert len({c.id for c in told}) == len(told) == 27
     for claim in told:
         assert (claim.needs["obstacles"], claim.needs["localization"]) != ("fan", "localizer")
