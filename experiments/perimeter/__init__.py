@@ -96,9 +96,10 @@ study = Study(
         Parameter(
             "path",
             "of the leader (formation); circle and eight begin at once, as does the eight's change "
-            "of side; eight-smooth: curvature without jumps",
+            "of side, and runs into a wall; eight-smooth: curvature without jumps; -middle: where "
+            "no wall is in the way",
             "straight",
-            ("straight", "circle", "eight", "eight-smooth"),
+            ("straight", "circle", "eight", "eight-smooth", "eight-middle", "eight-smooth-middle"),
         ),
         Parameter(
             "heard",

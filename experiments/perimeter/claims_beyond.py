@@ -6,6 +6,7 @@ from experiments.perimeter.evidence import both, extreme, flags, gain_of_radio, 
 from experiments.perimeter.sizes import AFTERWARDS, GROWTH, PATHS
 from mjmr.claims import Bound, Claim
 
+LAW = "(not in the paper) leader and two followers, separation-bearing law"
 _BUNCH = {"task": "stay", "start": "bunch", "mode": "physical", "failure": "none"}
 _DISC = {**_BUNCH, "radius": 10.0, "spacing": "repaired", "factor": 0.0, "sensing": "rays",
          "wrong": 0.0}  # fmt: skip
@@ -17,7 +18,6 @@ def beyond() -> list[Claim]:
 
 
 def _formation() -> list[Claim]:
-    law = "(not in the paper) leader and two followers, separation-bearing law"
     found = []
     for path, bound in (("straight", 0.1), ("circle", 0.1), ("eight", 0.3)):
         for heard, prefix, words in (
@@ -29,13 +29,13 @@ def _formation() -> list[Claim]:
             found.append(
                 Claim(
                     id=f"{prefix}-{path}",
-                    text=law,
+                    text=LAW,
                     how=f"{path}, leader at 0.8 m/s, followers 2 m off at +-150 degrees: distance "
                     "of each follower's point from its place, rms from 30 s on; worst trial"
                     f"{words}",
                     bound=Bound("<=", bound),
                     unit="m",
-                    needs=_led(heard, path),
+                    needs=led(heard, path),
                     evaluate=extreme("place_rms_m"),
                 )
             )
@@ -43,12 +43,12 @@ def _formation() -> list[Claim]:
         *found,
         Claim(
             id="formation-eight-smooth",
-            text=law,
+            text=LAW,
             how="the eight without jumps of curvature, else as formation-eight; written "
             f"{AFTERWARDS}",
             bound=Bound("<=", 0.3),
             unit="m",
-            needs=_led("extrapolated", "eight-smooth"),
+            needs=led("extrapolated", "eight-smooth"),
             evaluate=extreme("place_rms_m"),
         ),
         Claim(
@@ -56,7 +56,7 @@ def _formation() -> list[Claim]:
             text="(not in the paper) the same",
             how="contacts of trucks, all paths together",
             bound=Bound("<=", 0.0),
-            needs=_led("extrapolated", *PATHS),
+            needs=led("extrapolated", *PATHS),
             evaluate=total("contacts"),
         ),
         Claim(
@@ -65,13 +65,14 @@ def _formation() -> list[Claim]:
             how="contacts of trucks, all paths together, what is heard taken as it is; written "
             f"{AFTERWARDS}",
             bound=Bound("<=", 0.0),
-            needs=_led("plain", *PATHS),
+            needs=led("plain", *PATHS),
             evaluate=total("contacts"),
         ),
     ]
 
 
-def _led(heard: str, *paths: str) -> dict[str, Any]:
+def led(heard: str, *paths: str) -> dict[str, Any]:
+    """What claims on these paths of the leader need."""
     return {"task": "formation", "path": paths, "mode": "physical", "heard": heard}
 
 

@@ -15,6 +15,7 @@ from mjmr.sensors.localizer import Localizer
 from mjmr.world import World
 
 PERIOD = 0.1
+HALF_LONG, HALF_WIDE = 60.0, 30.0  # m, of the hall
 SPEED = 0.8  # m/s, of the leader
 RADIUS = 10.0  # m, of the circle and of the eight's two
 SEPARATION, BEARINGS = 2.0, np.radians([150.0, -150.0])  # of the two followers
@@ -30,8 +31,8 @@ def formation(condition: Mapping[str, Any], seed: int) -> dict[str, Any]:
     is (``heard=plain``), or moved on by the speeds that came with it (``heard=extrapolated``).
     """
     rng = np.random.default_rng(np.random.SeedSequence([seed, 14]))
-    world = World.rectangle(120.0, 60.0, wall_height=0.6, floor="concrete")
-    start = np.array([-50.0 if condition["path"] == "straight" else 0.0, -10.0, 0.0])
+    world = World.rectangle(2 * HALF_LONG, 2 * HALF_WIDE, wall_height=0.6, floor="concrete")
+    path, start = start_of(condition["path"])
     places = start[:2] + SEPARATION * np.column_stack([np.cos(BEARINGS), np.sin(BEARINGS)])
     places = places - [AHEAD, 0.0] + rng.uniform(-0.3, 0.3, (2, 2))
     yaws = rng.uniform(-0.2, 0.2, 2)
@@ -44,10 +45,10 @@ def formation(condition: Mapping[str, Any], seed: int) -> dict[str, Any]:
            for b in BEARINGS]  # fmt: skip
     track: list[np.ndarray] = []
     simulation.observe(lambda: track.append(simulation.truth.poses(trucks)))
-    duration = min(condition["duration"], 110.0 if condition["path"] == "straight" else 160.0)
+    duration = min(condition["duration"], 110.0 if path == "straight" else 160.0)
     with contextlib.closing(simulation):
         for now in simulation.ticks(duration):
-            leads = np.array([SPEED, _turn(condition["path"], now)])
+            leads = np.array([SPEED, _turn(path, now)])
             pose = trucks.localizer.read()
             command = np.zeros((3, 2))
             command[0] = leads
@@ -63,7 +64,18 @@ def formation(condition: Mapping[str, Any], seed: int) -> dict[str, Any]:
                         command[k + 1] = law[k].command(seen[k : k + 1], heard[k : k + 1, 3:])[0]
             radio.broadcast_arrays(np.column_stack([pose, np.tile(leads, (3, 1))]))
             trucks.drive(command)
-    return {"time_s": duration, **_errors(np.stack(track)), "contacts": _contacts(meter)}
+    return {"time_s": duration, **_errors(np.stack(track)), **_contacts(meter)}
+
+
+def start_of(name: str) -> tuple[str, np.ndarray]:
+    """Form of a path, and pose (3,) at which its leader starts.
+
+    From y = -10 m the second circle of the eight reaches a wall, and claims were committed with it;
+    ``-middle`` starts in the middle of the hall.
+    """
+    path = name.removesuffix("-middle")
+    return path, np.array([-50.0 if path == "straight" else 0.0, 0.0 if path != name else -10.0,
+                           0.0])  # fmt: skip
 
 
 def _turn(path: str, now: float) -> float:
@@ -120,5 +132,8 @@ def _simulation(condition: Mapping[str, Any], world: World, seed: int) -> tuple[
     return simulation, ContactMeter(simulation)
 
 
-def _contacts(meter: Any) -> int:
-    return -1 if meter is None else int(meter.episodes)
+def _contacts(meter: Any) -> dict[str, Any]:
+    """Of trucks with each other, and time that they touch walls [s]."""
+    if meter is None:
+        return {"contacts": -1, "obstacle_contact_s": -1.0}
+    return {"contacts": int(meter.episodes), "obstacle_contact_s": float(meter.obstacles)}

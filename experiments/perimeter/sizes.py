@@ -11,7 +11,11 @@ SIXTH = 1.0  # of the chord of six: d_des is not below it, and they may stop
 LATER = 660.0  # s: 60 s, then 600 s to be even again
 AFTERWARDS = "after quick's seed 0 and half a standard run had been seen"  # of claims, on them
 PATHS = ("straight", "circle", "eight")
-SWEEP = (0.6, 0.7, 0.8, 0.9, 0.95, 1.0, 1.05, 1.1, 1.2, 1.3, 1.4)
+TIGHT, ROOMY = (0.6, 0.7, 0.8, 0.9, 0.95), (1.05, 1.1, 1.2, 1.3, 1.4)
+SWEEP = (*TIGHT, 1.0, *ROOMY)  # d_des in even chords
+COUNTS = (3, 4, 5, 6, 7, 8)  # robots
+LONG = 900.0  # s: eight stop after 700
+MIDDLE = ("eight-middle", "eight-smooth-middle")  # where no wall is in the way
 RANGES = (0.0, 10.0, 25.0, 150.0)  # m, of the radio
 
 
@@ -52,6 +56,10 @@ def grids(join: int, few: int, sweep: int, senses: int = 5) -> tuple[Grid, ...]:
         Grid(task="formation", path=PATHS, heard="plain", seeds=few),
         Grid(task="envelope", seeds=few),
         Grid(**JOIN, mode="unicycle", d_com=RANGES, seeds=sweep),
+        Grid(**STAY, mode="unicycle", factor=SWEEP, seeds=few),
+        Grid(**{**STAY, "duration": LONG}, mode="unicycle", robots=(2, *COUNTS), seeds=few),
+        Grid(task="formation", path=MIDDLE, seeds=few),
+        Grid(task="formation", path=MIDDLE[0], heard="plain", seeds=few),
         Grid(**JOIN, obstacles="sonars", localization=("localizer", "odometry"), seeds=senses),
         Grid(**JOIN, localization=("odometry", "odometry-compass"), seeds=senses),
         Grid(**STAY, obstacles="sonars", localization=("localizer", "odometry"), seeds=few),
@@ -78,12 +86,7 @@ QUICK = Size(
 STANDARD = Size("standard", grids=grids(20, 3, 8), default_seeds=3, expected_minutes=17.0)
 FULL = Size(
     "full",
-    grids=(
-        *grids(60, 10, 20, 10),
-        Grid(**STAY, mode="unicycle", factor=SWEEP, seeds=5),
-        Grid(**STAY, mode="unicycle", robots=(2, 3, 4, 6, 7, 8), seeds=5),
-    ),
+    grids=grids(60, 10, 20, 10),
     default_seeds=10,
     expected_minutes=90.0,
-    note="with sweeps of d_des and of the number of robots on unicycle bodies",
 )

@@ -5,10 +5,17 @@ import pytest
 
 from experiments.perimeter import study
 from experiments.perimeter.checks import check
-from experiments.perimeter.formation import _turn
+from experiments.perimeter.formation import (
+    HALF_LONG,
+    HALF_WIDE,
+    SEPARATION,
+    _turn,
+    start_of,
+)
 from experiments.perimeter.trial import trial
 from experiments.perimeter.worlds import build
 from mjmr.cli import main
+from mjmr.robots.tamiya_txt1 import TamiyaTXT1
 
 BAD = [
     ("radius=60", "the largest has 34 m"),
@@ -92,3 +99,18 @@ def test_the_eight_changes_sides_at_once_and_the_smooth_one_does_not():
     assert np.abs(np.diff(smooth)).max() < 0.003
     assert np.abs(smooth).max() == pytest.approx(0.08)
     assert set(np.unique(circle)) == {0.0, 0.08}
+
+
+@pytest.mark.parametrize(
+    ("name", "fits"),
+    [("circle", True), ("eight", False), ("eight-middle", True), ("eight-smooth-middle", True)],
+)
+def test_paths_in_the_middle_keep_leader_and_followers_off_the_walls(name, fits):
+    path, (x, y, yaw) = start_of(name)
+    track = []
+    for now in np.arange(0.0, 160.0, 0.1):
+        yaw += 0.1 * _turn(path, now)
+        x, y = x + 0.08 * np.cos(yaw), y + 0.08 * np.sin(yaw)
+        track.append((x, y))
+    room = np.array([HALF_LONG, HALF_WIDE]) - np.abs(track).max(axis=0)
+    assert (room.min() > SEPARATION + TamiyaTXT1.radius) == fits
