@@ -194,7 +194,7 @@ def test_headings_of_a_compass_turn_the_way_that_was_counted():
     assert plain.step(np.full((1, 2), np.nan))[0] == pytest.approx(first)
 
 
-@pytest.mark.parametrize("name", SENSES)
+@pytest.mark.parametrize("name", ["suite", "compass"])
 def test_teams_with_other_senses_track(name):
     given = SENSES[name][0]
     found = trial(study.condition(task="stay", start="bunch", duration=35.0, **given), 1000)
