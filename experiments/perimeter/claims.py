@@ -9,6 +9,7 @@ import numpy as np
 from experiments.perimeter.claims_beyond import beyond
 from experiments.perimeter.claims_later import later
 from experiments.perimeter.claims_room import in_the_middle
+from experiments.perimeter.claims_seen import seen
 from experiments.perimeter.claims_senses import senses
 from experiments.perimeter.claims_sweep import swept
 from experiments.perimeter.conditions import DRIVEN, JOIN, LITERAL, N1, STAY
@@ -40,6 +41,7 @@ def claims() -> list[Claim]:
         *later(),
         *swept(),
         *in_the_middle(),
+        *seen(),
         *senses(),
     ]
 

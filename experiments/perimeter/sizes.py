@@ -15,6 +15,7 @@ TIGHT, ROOMY = (0.6, 0.7, 0.8, 0.9, 0.95), (1.05, 1.1, 1.2, 1.3, 1.4)
 SWEEP = (*TIGHT, 1.0, *ROOMY)  # d_des in even chords
 COUNTS = (3, 4, 5, 6, 7, 8)  # robots
 LONG = 900.0  # s: eight stop after 700
+SEEN = ("straight", "circle", "eight-middle", "eight-smooth-middle")  # by camera
 MIDDLE = ("eight-middle", "eight-smooth-middle")  # where no wall is in the way
 RANGES = (0.0, 10.0, 25.0, 150.0)  # m, of the radio
 
@@ -59,6 +60,7 @@ def grids(join: int, few: int, sweep: int, senses: int = 5) -> tuple[Grid, ...]:
         Grid(**STAY, mode="unicycle", factor=SWEEP, seeds=few),
         Grid(**{**STAY, "duration": LONG}, mode="unicycle", robots=(2, *COUNTS), seeds=few),
         Grid(task="formation", path=MIDDLE, seeds=few),
+        Grid(task="formation", path=SEEN, heard="nothing", seeds=few),
         Grid(task="formation", path=MIDDLE[0], heard="plain", seeds=few),
         Grid(**JOIN, obstacles="sonars", localization=("localizer", "odometry"), seeds=senses),
         Grid(**JOIN, localization=("odometry", "odometry-compass"), seeds=senses),
