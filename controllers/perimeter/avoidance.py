@@ -62,6 +62,7 @@ class Avoidance:
         self.waiting = np.zeros(n)
         self.side = np.zeros(n)
         self._clear = np.full(n, np.inf)  # s, since somebody ahead was last in the way
+        self._unseen = np.zeros((n, n))  # s, for which one told of ahead has not been seen
 
     def apply(
         self, command: Array, heading: Array, edge: Array, state: NDArray[np.int64],
@@ -78,8 +79,30 @@ class Avoidance:
             body: Nearest robot seen (n, 2) [m], own frame; one that is not known by radio counts as
                 somebody ahead whose rank is unknown.
         """
+        self._disbelieve(near, body)
         found = self._rule(command, state, near)
         return self._guard(found, heading, edge, state, near, body)
+
+    def _disbelieve(self, near: Neighbours, body: Array) -> None:
+        """Whoever is seen is where it is seen, and who is told of ahead but not seen is not (ours).
+
+        Poses that drift put others where they are not, for good if both stand.
+        """
+        c, rows = self._config, np.arange(len(body))
+        if np.isinf(c.doubt):
+            return
+        apart, bearing = np.hypot(*body.T), np.arctan2(body[:, 1], body[:, 0])
+        off = np.nan_to_num(self._off(near, body), nan=np.inf)
+        same = np.argmin(off, axis=1)
+        found = rows[off[rows, same] < c.same]
+        near.apart[found, same[found]] = apart[found] + c.reach
+        near.bearing[found, same[found]] = bearing[found]
+        with np.errstate(invalid="ignore"):
+            seen = (apart < c.guard_radius) & (np.abs(bearing) < c.guard_angle)
+            told = (near.apart < c.guard_radius) & (np.abs(near.bearing) < c.guard_angle)
+        unseen = told & ~seen[:, None]
+        self._unseen = np.where(unseen, self._unseen + c.period, 0.0)
+        near.apart = np.where(self._unseen > c.doubt, np.nan, near.apart)
 
     def _rule(self, command: Array, state: NDArray[np.int64], near: Neighbours) -> Array:
         """Rule 3, while searching and approaching.
@@ -194,8 +217,13 @@ class Avoidance:
     def _somebody(self, near: Neighbours, body: Array) -> tuple[Array, Array]:
         """Distance [m] and bearing (n,) of who is seen but not told of by radio; NaN: nobody."""
         apart, bearing = np.hypot(*body.T), np.arctan2(body[:, 1], body[:, 0])
+        with np.errstate(invalid="ignore"):
+            told = (self._off(near, body) < self._config.same).any(axis=1)
+        return np.where(told, np.nan, apart), bearing
+
+    @staticmethod
+    def _off(near: Neighbours, body: Array) -> Array:
+        """How far others are told to be (n, n) from the one that is seen (n, 2) [m]."""
         x = near.apart * np.cos(near.bearing) - body[:, :1]
         y = near.apart * np.sin(near.bearing) - body[:, 1:]
-        with np.errstate(invalid="ignore"):
-            told = (np.hypot(x, y) < self._config.same).any(axis=1)
-        return np.where(told, np.nan, apart), bearing
+        return np.hypot(x, y)

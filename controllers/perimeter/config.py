@@ -61,6 +61,8 @@ class PerimeterConfig:
             way there at search speed.
         news_age: Of news that nobody sets out for any more [s].
         forget_after: Age at which what was heard of a robot counts no more [s].
+        doubt: For which the own sensors see nobody ahead until one who is said to be there no
+            longer counts [s]; infinite: the radio is believed.
     """
 
     bounds: tuple[float, float, float, float]
@@ -103,6 +105,7 @@ class PerimeterConfig:
     news_timeout: float = 60.0
     news_age: float = 120.0
     forget_after: float = 1.0
+    doubt: float = math.inf
 
     def __post_init__(self):
         if self.spacing not in SPACINGS:

@@ -101,6 +101,11 @@ class PerimeterTeam:
         spoken = [now.pose, self.state, relay.place, at, relay.origin, relay.hops]
         return np.column_stack([*spoken, self._circles.radius, self._speed]).astype(np.float64)
 
+    @property
+    def hops(self) -> NDArray[np.int64]:
+        """Over how many radios the news each robot holds came (n,)."""
+        return self.relay.hops
+
     def tell(self, who: Flags, place: Array, time: float) -> None:
         """An operator tells robots ``who`` (n,) that a perimeter is at ``place`` (2,)."""
         self.relay.tell(who, place, time)

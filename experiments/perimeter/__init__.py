@@ -8,6 +8,7 @@ from pathlib import Path
 
 from experiments.perimeter.sizes import FULL, QUICK, STANDARD
 from mjmr.conditions import Parameter
+from mjmr.parts import Method, Part
 from mjmr.study import Study
 
 _HERE = "experiments.perimeter"
@@ -48,6 +49,21 @@ study = Study(
             "160 x 120 at 5 Hz and a red mask; both: by rays, at 5 Hz, pictures compared with them",
             "rays",
             ("rays", "camera", "both"),
+        ),
+        Parameter(
+            "obstacles",
+            "by what whoever is near is found. fan: 72 rays around that know trucks from walls; "
+            "sonars: eight cones ahead at 5 Hz, less the known walls and what the camera knows as "
+            "red",
+            "fan",
+            ("fan", "sonars"),
+        ),
+        Parameter(
+            "localization",
+            "localizer: poses with noise; odometry: the counts of the rear wheels, from the known "
+            "start; odometry-compass: the counts for the way, a compass for the heading",
+            "localizer",
+            ("localizer", "odometry", "odometry-compass"),
         ),
         Parameter("robots", "how many", 5, least=1),
         Parameter("radius", "of the spill at time 0", 10.0, unit="m", least=0.6),
@@ -106,5 +122,48 @@ study = Study(
     world=f"{_HERE}.worlds:world",
     bench=f"{_HERE}.bench:bench",
     prepare=f"{_HERE}.trial:prepare",
+    parts=(
+        Part(
+            role="team",
+            doc="speeds and turn rates of all trucks from what each of them senses and hears; "
+            "tasks join and stay",
+            default="controllers.perimeter:PerimeterTeam",
+            constructor=("n", "config", "rng"),
+            methods=(
+                Method(
+                    name="step",
+                    arguments=("now",),
+                    returns=("n", 2),
+                    unit="m/s and rad/s, forward and turn",
+                    doc="every 0.1 s; now is a controllers.perimeter.Percepts, which says what its "
+                    "arrays are. Beside it a team has an attribute state (n,), whole numbers, "
+                    "index into controllers.perimeter.STATES, by which the trial is judged",
+                ),
+                Method(
+                    name="speak",
+                    arguments=("now",),
+                    optional=True,
+                    doc="after step: what each truck broadcasts, (n, 11), columns "
+                    "controllers.perimeter.percepts.SPOKEN, NaN where there is nothing to say; "
+                    "without it nobody hears anything",
+                ),
+                Method(
+                    name="tell",
+                    arguments=("who", "place", "time"),
+                    optional=True,
+                    doc="failure=lie only: an operator tells trucks who (n,) bool that a spill is "
+                    "at place (2,) [m], world frame",
+                ),
+            ),
+            optional=(
+                "joined (n,) [s], when each first tracked, NaN: not yet; from state if absent",
+                "told (n,) bool, who was told before; who was ever MOVING if absent",
+                "sensed (n,) [s], when each first sensed the edge; when it came into range if "
+                "absent",
+                "hops (n,), over how many radios news came; 0 if absent",
+                "desired (n,) [m], d_des, for a metric alone; unknown if absent",
+            ),
+        ),
+    ),
     verdicts=Path(__file__).with_name("verdicts.json"),
 )

@@ -10,6 +10,7 @@ from experiments.perimeter.claims_beyond import beyond
 from experiments.perimeter.claims_later import later
 from experiments.perimeter.claims_room import in_the_middle
 from experiments.perimeter.claims_seen import seen
+from experiments.perimeter.claims_senses import senses
 from experiments.perimeter.claims_sweep import swept
 from experiments.perimeter.conditions import DRIVEN, JOIN, LITERAL, N1, STAY
 from experiments.perimeter.evidence import (
@@ -41,6 +42,7 @@ def claims() -> list[Claim]:
         *swept(),
         *in_the_middle(),
         *seen(),
+        *senses(),
     ]
 
 

@@ -3,7 +3,8 @@
 from experiments.perimeter.sizes import LATER
 
 PLAIN = {
-    "mode": "physical", "sensing": "rays", "robots": 5, "edge": "disc", "d_com": 25.0,
+    "mode": "physical", "sensing": "rays", "obstacles": "fan", "localization": "localizer",
+    "robots": 5, "edge": "disc", "d_com": 25.0,
     "spacing": "repaired", "factor": 0.0, "estimated": False, "gain": "soft", "failure": "none",
     "wrong": 0.0,
 }  # fmt: skip

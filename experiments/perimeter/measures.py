@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from controllers.estimation.odometry import Odometry
 from controllers.perimeter import ACQUIRE, MOVING, SEARCHING, TRACKING
+from experiments.perimeter.reckoning import Reckoning
 from experiments.perimeter.sensing import AIM, INSIDE
 from experiments.perimeter.worlds import HALF
-from mjmr.geometry import rotate
+from mjmr.geometry import rotate, wrap_angle
 
 JOINED = 30.0  # s after joining, from which tracking counts
 WINDOW = 5  # periods of 0.1 s over which turn rates and speeds are taken
@@ -18,30 +18,30 @@ STILL = 30.0  # s, at the end, in which nobody may move
 
 
 class Drift:
-    """Where the trucks would be by the counts of their rear wheels alone; nobody steers by it."""
+    """Where the trucks would be by dead reckoning, without the bus between; from the start.
 
-    def __init__(self, scene: Any):
+    With a localizer nobody steers by it: then it is by the rear wheels alone.
+    """
+
+    def __init__(self, scene: Any, localization: str):
         """Begin where they start."""
-        platform = scene.trucks.platform
-        self._encoders = scene.trucks.encoders
+        trucks = scene.trucks
+        self._encoders = trucks.encoders
+        self._compass = trucks.compass if localization == "odometry-compass" else None
         self._seen_at = float("nan")
-        self._odometry = Odometry(
-            scene.start,
-            radius=platform.rolling_radius,
-            track=platform.track,
-            counts_per_turn=self._encoders.counts_per_turn,
-        )
+        self._reckoning = Reckoning(scene)
 
     def see(self) -> None:
         """Take the counts, if there are new ones."""
         if self._encoders.sampled_at != self._seen_at:
             self._seen_at = self._encoders.sampled_at
-            self._odometry.step(self._encoders.read())
+            heading = None if self._compass is None else self._compass.read()
+            self._reckoning.step(self._encoders.read(), heading)
 
-    def error(self, poses: np.ndarray) -> float:
-        """Mean distance from where they are (n, 3) [m]."""
-        way = self._odometry.poses[:, :2] - poses[:, :2]
-        return float(np.hypot(way[:, 0], way[:, 1]).mean())
+    def errors(self, poses: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Distances (n,) [m] and headings (n,) [rad] from where they are (n, 3)."""
+        off = self._reckoning.poses - poses
+        return np.hypot(off[:, 0], off[:, 1]), np.abs(wrap_angle(off[:, 2]))
 
 
 class Log:
@@ -63,7 +63,7 @@ class Log:
             from mjmr.metrics import ContactMeter
 
             self._meter = ContactMeter(simulation)
-        self._odometry = Drift(scene)
+        self._drift = Drift(scene, condition["localization"])
         self._hops = np.zeros(scene.trucks.n, dtype=np.int64)
         self._sees_at = float("nan")
         simulation.observe(self._see)
@@ -73,9 +73,9 @@ class Log:
         self._times.append(simulation.time)
         self._poses.append(simulation.truth.poses(self._scene.trucks))
         self._states.append(team.state.copy())
-        self._odometry.see()
+        self._drift.see()
         entering = (team.state == MOVING) & np.isnan(team.joined)
-        self._hops = np.where(entering, np.maximum(self._hops, team.relay.hops), self._hops)
+        self._hops = np.where(entering, np.maximum(self._hops, team.hops), self._hops)
         if self._condition["sensing"] == "both":
             self._compare()
 
@@ -118,9 +118,19 @@ class Log:
             **self._failing(times, poses, states),
             **self._contacts(poses, times),
             **self._agreement(),
-            "drift_m": self._odometry.error(poses[-1]),
+            **self._drifted(poses[-1]),
             "states": _runs(times, states),
             "graph": self._graph(poses, times),
+        }
+
+    def _drifted(self, poses: Any) -> dict[str, float]:
+        """Of who is switched on, in the end."""
+        way, turn = self._drift.errors(poses)
+        on = self._failure.on
+        return {
+            "drift_m": float(way.mean()),
+            "drift_worst_m": float(way[on].max()),
+            "drift_worst_deg": float(np.degrees(turn[on].max())),
         }
 
     def _joining(self) -> dict[str, Any]:

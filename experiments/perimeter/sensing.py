@@ -6,14 +6,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from controllers.perimeter.echoes import kind_in_cones, nearest_unexplained, wall_ranges
 from controllers.perimeter.percepts import SPOKEN, Percepts, foot_of_edge, nearest_of_kind
 from controllers.perimeter.vision import inside
-from experiments.perimeter.worlds import Scene
+from experiments.perimeter.reckoning import Reckoning
+from experiments.perimeter.worlds import HALF, Scene
 from mjmr.bus import Bus
 from mjmr.loop import TickedSimulation
 from mjmr.radio import Radio
 from mjmr.sensors.camera import Camera
+from mjmr.sensors.compass import Compass
 from mjmr.sensors.localizer import Localizer
+from mjmr.sensors.rangers import Sonar
 from mjmr.sensors.spot import Spot
 from mjmr.sensors.visual_arc import PILLAR, ROBOT, VisualArc
 
@@ -27,15 +31,41 @@ SEE = 5.0  # m, at which trucks see each other
 COLUMNS = 72
 FAN_HEIGHT = 0.2  # m, above the floor: what it sees is the spill's side and other trucks
 POSE, EDGE, BODY, INSIDE = "pose", "edge", "body", "inside"
-IDENTIFIERS = {INSIDE: 0x100, EDGE: 0x110, BODY: 0x120, POSE: 0x130}
-SIZES = {INSIDE: 1, EDGE: 8, BODY: 8, POSE: 12}  # bytes
+RED, SONAR, ODOMETER, COMPASS = "red", "sonar", "odometer", "compass"
+IDENTIFIERS = {
+    INSIDE: 0x100, EDGE: 0x110, RED: 0x118, BODY: 0x120, SONAR: 0x128, POSE: 0x130,
+    ODOMETER: 0x138, COMPASS: 0x13C,
+}  # fmt: skip
+SIZES = {
+    INSIDE: 1, EDGE: 8, RED: 16, BODY: 8, SONAR: 16, POSE: 12, ODOMETER: 8, COMPASS: 2,
+}  # fmt: skip
+"""Bytes."""
 STALE = 0.5  # s: what is older counts as missing
+SONAR_RATE = 5.0  # Hz: 5 m and back take 29 ms, and of eight two fire at once
+BEAM = np.radians(15.0)  # full angle of a cone
+NEAREST, FARTHEST = 0.2, 5.0  # m, of the sonars
+FANS = 4  # of rays a cone: a flat one at 0.19 m passes over the tyres of other trucks
+MARGIN = 0.5  # m, by which an echo must be nearer than what is known to be in its cone
+SLACK = np.radians(12.0)  # of a cone, for what a truck turns between two samples and errs in yaw
+ACCOUNTED = 2.75  # m from the fan, up to which echoes count; the camera knows red up to 3 m
+HEADING_NOISE = 0.02  # rad, of the compass; ours
 
 
 def mount(scene: Scene, condition: Mapping[str, Any]) -> None:
     """Mount the sensors of a condition on the trucks."""
     trucks = scene.trucks
-    trucks.mount(Localizer(rate=RATE, position_noise=0.02, yaw_noise=0.01), "localizer")
+    if condition["localization"] == "localizer":
+        trucks.mount(Localizer(rate=RATE, position_noise=0.02, yaw_noise=0.01), "localizer")
+    elif condition["localization"] == "odometry-compass":
+        trucks.mount(Compass(rate=RATE, noise=HEADING_NOISE), "compass")
+    if condition["obstacles"] == "sonars":
+        trucks.mount(
+            Sonar(
+                beam_width=BEAM, min_range=NEAREST, max_range=FARTHEST, rate=SONAR_RATE,
+                proportional_noise=0.01, fans=FANS,
+            ),
+            "sonar",
+        )  # fmt: skip
     trucks.mount(
         VisualArc(
             site="lidar", height=FAN_HEIGHT, columns=COLUMNS, field_of_view=2 * np.pi,
@@ -72,15 +102,13 @@ class Senses:
         self.n = trucks.n
         self.radio = Radio(simulation, range=condition["d_com"])
         self.bus = Bus(simulation, self.n)
-        arc, localizer = trucks.arc, trucks.localizer
+        self._devices: list[str] = []
+        arc = trucks.arc
         site = simulation.rays.sites(trucks.prefixes[:1], ["lidar"])[0]
-        at = simulation.rays.mounts(site)[0]
+        at = self._at = simulation.rays.mounts(site)[0]
 
         def edge() -> Array:
             return foot_of_edge(arc.read(), arc.angles, PILLAR, at, SENSE)
-
-        def body() -> Array:
-            return nearest_of_kind(arc.read(), arc.angles, ROBOT, at, SEE)
 
         if condition["sensing"] == "camera":
             eye = trucks.eye
@@ -88,11 +116,43 @@ class Senses:
         else:
             self._attach(INSIDE, trucks.spot.read, lambda: trucks.spot.sampled_at)
         self._attach(EDGE, edge, lambda: arc.sampled_at)
-        self._attach(BODY, body, lambda: arc.sampled_at)
-        self._attach(POSE, localizer.read, lambda: localizer.sampled_at)
+        self._others(condition["obstacles"], trucks)
+        self._reckoning = None
+        self._whereabouts(condition["localization"], scene)
+
+    def _others(self, obstacles: str, trucks: Any) -> None:
+        """Devices that find whoever is near: the fan, or sonars beside a camera that knows red."""
+        arc, at = trucks.arc, self._at
+        if obstacles == "fan":
+
+            def body() -> Array:
+                return nearest_of_kind(arc.read(), arc.angles, ROBOT, at, SEE)
+
+            self._attach(BODY, body, lambda: arc.sampled_at)
+            return
+        sonar = trucks.sonar
+        mounts = self._mounts = sonar.mounts
+
+        def red() -> Array:
+            return kind_in_cones(arc.read(), arc.angles, PILLAR, at, mounts, BEAM + SLACK, SENSE)
+
+        self._attach(RED, red, lambda: arc.sampled_at)
+        self._attach(SONAR, sonar.read, lambda: sonar.sampled_at)
+
+    def _whereabouts(self, localization: str, scene: Scene) -> None:
+        """Devices that tell where a truck is, or how far it went."""
+        trucks = scene.trucks
+        if localization == "localizer":
+            self._attach(POSE, trucks.localizer.read, lambda: trucks.localizer.sampled_at)
+            return
+        self._reckoning = Reckoning(scene)
+        self._attach(ODOMETER, trucks.encoders.read, lambda: trucks.encoders.sampled_at)
+        if localization == "odometry-compass":
+            self._attach(COMPASS, trucks.compass.read, lambda: trucks.compass.sampled_at)
 
     def _attach(self, name: str, read: Any, sampled_at: Any) -> None:
         self.bus.attach(name, IDENTIFIERS[name], read, sampled_at, size=SIZES[name])
+        self._devices.append(name)
 
     def look(self, time: float, on: NDArray[np.bool_]) -> Percepts | None:
         """What the trucks know now; None before anything has come.
@@ -103,10 +163,10 @@ class Senses:
         """
         bus, n = self.bus, self.n
         bus.step()
-        if not all((bus.age(name) < np.inf).any() for name in IDENTIFIERS):
+        if not all((bus.age(name) < np.inf).any() for name in self._devices):
             return None
         read = {}
-        for name in IDENTIFIERS:
+        for name in self._devices:
             value = bus.read(name)
             fresh = (bus.age(name) <= STALE) & on
             # a device that its manager reports gone is not asked
@@ -118,7 +178,30 @@ class Senses:
             heard, sent = self.radio.latest()
             # the clock is behind the newest there can be
             sent[~on] = np.nan
+        pose = read[POSE] if self._reckoning is None else self._reckon(read)
+        body = read[BODY] if BODY in read else self._echo(read, pose)
         return Percepts(
-            time=time, pose=read[POSE], edge=read[EDGE], inside=read[INSIDE], body=read[BODY],
-            heard=heard, sent=sent,
+            time=time, pose=pose, edge=read[EDGE], inside=read[INSIDE], body=body, heard=heard,
+            sent=sent,
         )  # fmt: skip
+
+    def _reckon(self, read: Mapping[str, Array]) -> Array:
+        """Poses (n, 3) by dead reckoning; NaN where a device of it is missing."""
+        assert self._reckoning is not None
+        counts, heading = read[ODOMETER], read.get(COMPASS)
+        pose = self._reckoning.step(counts, heading)
+        pose[~np.isfinite(counts).all(axis=1)] = np.nan
+        if heading is not None:
+            pose[~np.isfinite(heading)] = np.nan
+        return pose
+
+    def _echo(self, read: Mapping[str, Array], pose: Array) -> Array:
+        """Who is ahead by the sonars (n, 2): what neither walls nor the spill explain.
+
+        Without a pose or a camera nothing explains an echo, so that it counts.
+        """
+        walls = wall_ranges(pose, self._mounts, BEAM + SLACK, (-HALF, -HALF, HALF, HALF))
+        known = np.fmin(walls, read[RED])
+        return nearest_unexplained(
+            read[SONAR], known, self._mounts, margin=MARGIN, at=self._at[:2], reach=ACCOUNTED
+        )

@@ -20,13 +20,14 @@ MIDDLE = ("eight-middle", "eight-smooth-middle")  # where no wall is in the way
 RANGES = (0.0, 10.0, 25.0, 150.0)  # m, of the radio
 
 
-def grids(join: int, few: int, sweep: int) -> tuple[Grid, ...]:
+def grids(join: int, few: int, sweep: int, senses: int = 5) -> tuple[Grid, ...]:
     """Conditions of a size that decides claims.
 
     Args:
         join: Seeds of the trials in which a team finds a spill.
         few: Seeds of everything else.
         sweep: Seeds of the sweeps on unicycle bodies.
+        senses: Seeds of the trials in which trucks with other senses find a spill.
     """
     return (
         Grid(**JOIN, seeds=join),
@@ -61,6 +62,14 @@ def grids(join: int, few: int, sweep: int) -> tuple[Grid, ...]:
         Grid(task="formation", path=MIDDLE, seeds=few),
         Grid(task="formation", path=SEEN, heard="nothing", seeds=few),
         Grid(task="formation", path=MIDDLE[0], heard="plain", seeds=few),
+        Grid(**JOIN, obstacles="sonars", localization=("localizer", "odometry"), seeds=senses),
+        Grid(**JOIN, localization=("odometry", "odometry-compass"), seeds=senses),
+        Grid(**STAY, obstacles="sonars", localization=("localizer", "odometry"), seeds=few),
+        Grid(**STAY, localization="odometry", seeds=few),
+        Grid(
+            task="stay", start="scattered", obstacles="sonars",
+            localization=("localizer", "odometry"), seeds=few,
+        ),
     )  # fmt: skip
 
 
@@ -79,7 +88,7 @@ QUICK = Size(
 STANDARD = Size("standard", grids=grids(20, 3, 8), default_seeds=3, expected_minutes=17.0)
 FULL = Size(
     "full",
-    grids=grids(60, 10, 20),
+    grids=grids(60, 10, 20, 10),
     default_seeds=10,
     expected_minutes=90.0,
 )

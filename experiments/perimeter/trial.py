@@ -9,23 +9,28 @@ import numpy as np
 from controllers.perimeter import STATES, PerimeterConfig, PerimeterTeam
 from controllers.perimeter.config import even_factor, tracked_radius
 from experiments.perimeter.checks import check
+from experiments.perimeter.crew import Crew
 from experiments.perimeter.failures import Failure
 from experiments.perimeter.measures import Log
 from experiments.perimeter.sensing import Senses, mount
 from experiments.perimeter.worlds import HALF, build
 from mjmr.kinematics import KinematicSimulation
+from mjmr.parts import Parts
 
 PERIOD = 0.1
+# poses that drift put others metres away from where they are, and own sensors know better
+DRIFTING = {"same": 3.0, "doubt": 10.0}  # m, s
 SETTLED = 90.0  # s, that a trial of joining goes on after the last truck joined
 Metrics = dict[str, Any]
 
 
-def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
+def trial(condition: Mapping[str, Any], seed: int, parts: Parts | None = None) -> Metrics:
     """Run one condition with one seed.
 
     Args:
         condition: See the study's parameters.
         seed: Of the trial.
+        parts: What takes the role ``team``; None: the published one.
 
     Returns:
         Metrics; see :class:`experiments.perimeter.measures.Log`.
@@ -45,7 +50,8 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
     simulation = _simulation(condition, scene.world, seed)
     senses = Senses(simulation, scene, condition)
     config = configuration(condition)
-    team = PerimeterTeam(trucks.n, config, simulation.rng("controller"))
+    kind = PerimeterTeam if parts is None else parts["team"]
+    team = Crew(kind(trucks.n, config, simulation.rng("controller")), trucks.n)
     failure = Failure(condition, scene, simulation, senses, team)
     log = Log(simulation, scene, senses, team, failure, condition)
     simulation.caption = lambda: caption(team)
@@ -57,7 +63,9 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
             if known is not None:
                 command = team.step(known)
                 command[~failure.on] = 0.0
-                senses.radio.broadcast_arrays(team.speak(known).astype(np.float32), failure.speaks)
+                spoken = team.speak(known)
+                if spoken is not None:
+                    senses.radio.broadcast_arrays(spoken, failure.speaks)
             trucks.drive(command)
             if simulation.noted:
                 simulation.note(links=log.links())
@@ -80,6 +88,7 @@ def configuration(condition: Mapping[str, Any]) -> PerimeterConfig:
         desired=desired,
         factor=factor,
         spacing=condition["spacing"],
+        **({} if condition["localization"] == "localizer" else DRIFTING),
     )
 
 

@@ -364,3 +364,34 @@ def test_who_joins_crosses_the_edge_four_times_before_it_may_stop():
         seen = np.array([float(inside_now)])
         told.append(zigzag.speeds(still, np.zeros(1), seen, yes, yes if k == 0 else no)[0])
     assert told == [0.4] * 5 + [0.4] * 3 + [0.0] * 2
+
+
+@pytest.mark.parametrize(("doubt", "seen", "goes"), [(np.inf, 0, 0), (2.0, 0, 1), (2.0, 1, 0)])
+def test_who_is_told_of_ahead_and_is_not_seen_there_is_doubted_if_poses_drift(doubt, seen, goes):
+    config = PerimeterConfig(bounds=BOUNDS, doubt=doubt)
+    avoidance = Avoidance(2, config)
+    pose = np.array([[0.0, 0.0, 0.0], [0.8, 0.0, np.pi / 2]])
+    body = np.full((2, 2), np.nan)
+    if seen:
+        body[0] = [0.5, 0.0]
+    state, wanted = np.array([ACQUIRE, TRACKING]), np.array([[0.4, 0.0], [0.0, 0.0]])
+    for _ in range(100):
+        told = avoidance.apply(wanted, np.zeros(2), NO_EDGE, state, neighbours(pose, state), body)
+    assert (told[0, 0] > 0.0) == bool(goes)
+
+
+def test_who_is_seen_is_where_it_is_seen_if_poses_drift():
+    """Told to be 2.2 m to the left, seen ahead: one does not drive into it."""
+    pose = np.array([[0.0, 0.0, 0.0], [0.5, 2.2, 1.0]])
+    body, state = np.array([[0.9, 0.0], [np.nan, np.nan]]), np.array([ACQUIRE, TRACKING])
+    wanted = np.array([[0.4, 0.0], [0.0, 0.0]])
+    for given in ({"same": 3.0, "doubt": 10.0}, {}):
+        avoidance = Avoidance(2, PerimeterConfig(bounds=BOUNDS, **given))
+        known = neighbours(pose, state)
+        told = avoidance.apply(wanted, np.zeros(2), NO_EDGE, state, known, body)
+        assert told[0].tolist() == [0.0, 0.0]
+        if given:
+            assert known.apart[0, 1] == pytest.approx(1.3)
+            assert known.bearing[0, 1] == 0.0
+        else:
+            assert known.apart[0, 1] == pytest.approx(np.hypot(0.5, 2.2))
