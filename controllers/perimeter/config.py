@@ -24,6 +24,7 @@ class PerimeterConfig:
         period: Between two steps [s].
         search_speed: [m/s].
         track_speed: [m/s]; also of ACQUIRE.
+        doubt_speed: While tracking by readings that cannot all be right, at most [m/s].
         top_turn: Largest turn rate [rad/s].
         track_turn: w_t of the bang-bang law at ``track_speed`` [rad/s].
         spiral_turn: a, with which a spiral begins [rad/s].
@@ -56,7 +57,8 @@ class PerimeterConfig:
         proportional: k_p [1/s].
         dead_band: epsilon [m].
         spacing: ``repaired``: the front robot of a close pair moves; ``literal``: equation 8.
-        resume_depth: Of the look-ahead point inside at which a stopped robot moves on [m].
+        resume_depth: Of the edge, inside or outside, at which a stopped robot moves on [m].
+        settle_error: Of the edge beside it, beyond which none may stop after a zigzag [m].
         news_timeout: After which a told location that shows nothing is given up [s]; besides the
             way there at search speed.
         news_age: Of news that nobody sets out for any more [s].
@@ -67,6 +69,7 @@ class PerimeterConfig:
     period: float = 0.1
     search_speed: float = 1.0
     track_speed: float = 0.4
+    doubt_speed: float = 0.2
     top_turn: float = 0.3
     track_turn: float = 0.1
     spiral_turn: float = 0.3
@@ -100,6 +103,7 @@ class PerimeterConfig:
     dead_band: float = 0.01
     spacing: str = "repaired"
     resume_depth: float = 0.15
+    settle_error: float = 0.05
     news_timeout: float = 60.0
     news_age: float = 120.0
     forget_after: float = 1.0

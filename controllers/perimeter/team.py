@@ -7,6 +7,7 @@ from controllers.perimeter import percepts
 from controllers.perimeter.approach import acquire, approach, edge_errors, onto, way_off
 from controllers.perimeter.avoidance import Avoidance, Neighbours
 from controllers.perimeter.config import PerimeterConfig, even_factors
+from controllers.perimeter.doubt import Doubt
 from controllers.perimeter.estimate import TrackedCircles
 from controllers.perimeter.percepts import Percepts
 from controllers.perimeter.relay import Relay
@@ -53,6 +54,7 @@ class PerimeterTeam:
         self.desired = np.full(n, config.desired or np.nan)
         self._spiral, self._boundary = Spiral(n, config, rng), Boundary(n, config)
         self._avoidance, self._zigzag = Avoidance(n, config), Zigzag(n, config)
+        self._doubt = Doubt(n, config)
         self._circles = TrackedCircles(n)
         self._seen_at = np.full(n, -np.inf)
         self._deadline = np.full(n, np.inf)
@@ -116,8 +118,9 @@ class PerimeterTeam:
         wanted = np.where(np.isfinite(desired), desired, 1e3)
         forward = spacing(apart, near.bearing, wanted, c)
         joins = tracks & (self.entered == now.time)
-        forward = self._zigzag.speeds(forward, error, now.inside, tracks, joins)
-        return np.column_stack([forward, bang_bang(now.inside, forward, c)])
+        inside = self._doubt.believed(now.inside, self._speed, tracks)
+        forward = self._doubt.limit(self._zigzag.speeds(forward, error, inside, tracks, joins))
+        return np.column_stack([forward, bang_bang(inside, forward, c)])
 
     def _estimate(self, now: Percepts, others: Flags) -> None:
         """d_des from the number of robots that track and the mean of their circles' radii."""

@@ -7,6 +7,7 @@ from controllers.perimeter import PerimeterConfig
 from controllers.perimeter.approach import acquire, approach, edge_errors, onto
 from controllers.perimeter.avoidance import Avoidance, Neighbours
 from controllers.perimeter.config import even_factor, tracked_radius
+from controllers.perimeter.doubt import Doubt
 from controllers.perimeter.estimate import TrackedCircles, circle
 from controllers.perimeter.percepts import foot_of_edge, nearest_of_kind
 from controllers.perimeter.spiral import Boundary, Spiral
@@ -145,6 +146,55 @@ def test_bang_bang_follows_discs_above_four_metres(radius, holds):
     assert (worst < 0.1) == holds
 
 
+def stray(wrong, heeds, n=60, seconds=120.0):
+    """Distances from a disc of 10 m (t, n) of robots each alone there by readings 0.1 s old."""
+    rng = np.random.default_rng(1000)
+    doubt, everybody = Doubt(n, CONFIG), np.ones(n, dtype=bool)
+    pose = np.tile([tracked_radius(10.0), 0.0, np.pi / 2], (n, 1))
+    forward, reading, off = np.zeros(n), np.zeros(n), []
+    for _ in range(round(seconds / 0.1)):
+        c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
+        spot = pose[:, :2] + np.column_stack([0.5 * c - 0.6 * s, 0.5 * s + 0.6 * c])
+        depth = 10.0 - np.hypot(*spot.T)
+        inside, reading = reading, ((depth > 0) ^ (rng.random(n) < wrong)) * 1.0
+        believed = doubt.believed(inside, forward, everybody)
+        if not heeds:
+            believed = inside
+        forward = doubt.limit(np.full(n, 0.4)) if heeds else np.full(n, 0.4)
+        pose = drive(pose, np.column_stack([forward, bang_bang(believed, forward, CONFIG)]))
+        off.append(depth)
+    return np.array(off[300:]), doubt
+
+
+def test_a_fifth_of_readings_wrong_is_noticed_and_strays_no_more():
+    literal, _ = stray(0.2, heeds=False)
+    mended, doubt = stray(0.2, heeds=True)
+    assert np.sqrt((literal**2).mean(axis=0)).max() > 0.1
+    assert np.sqrt((mended**2).mean(axis=0)).max() < 0.05
+    assert doubt.doubts.mean() > 0.9
+
+
+def test_readings_that_are_right_change_nothing():
+    literal, _ = stray(0.0, heeds=False)
+    mended, doubt = stray(0.0, heeds=True)
+    assert literal.tobytes() == mended.tobytes()
+    assert not doubt.doubts.any()
+
+
+def test_who_stands_notices_wrong_readings_takes_the_majority_and_forgets_when_it_leaves():
+    doubt, yes, no = Doubt(1, CONFIG), np.array([True]), np.array([False])
+    still, told = np.zeros(1), []
+    for k in range(60):
+        seen = np.array([float(k % 5 != 2)])  # every fifth says outside
+        told.append(doubt.believed(seen, still, yes)[0])
+    assert not all(told[:15])
+    assert all(told[30:])
+    assert np.isnan(doubt.believed(np.full(1, np.nan), still, yes)[0])
+    assert doubt.limit(np.array([0.4])).tolist() == [0.2]
+    doubt.believed(np.zeros(1), still, no)
+    assert doubt.limit(np.array([0.4])).tolist() == [0.4]
+
+
 def ring(angles, radius, config, desired, seconds):
     """Robots that follow a circle exactly, at the speeds of the spacing rule."""
     speed = np.zeros(len(angles))
@@ -199,6 +249,31 @@ def test_a_stopped_robot_makes_one_zigzag_when_the_edge_is_deep_inside():
     assert speed(0.01, 0.0) == 0.4
     assert speed(-0.01, 1.0) == 0.0
     assert speed(-0.01, 0.0) == 0.0
+
+
+def test_a_stopped_robot_makes_one_zigzag_when_the_edge_has_gone_from_it():
+    zigzag = Zigzag(1, CONFIG)
+    still, tracks = np.zeros(1), np.array([True])
+
+    def speed(error, is_inside):
+        return zigzag.speeds(still, np.array([error]), np.array([is_inside]), tracks, ~tracks)[0]
+
+    assert speed(0.1, 0.0) == 0.0
+    assert speed(0.16, 1.0) == 0.0  # a wrong reading
+    assert speed(0.16, 0.0) == 0.4
+    assert speed(0.0, 1.0) == 0.4  # in, out, in
+    assert speed(0.01, 0.0) == 0.4
+    assert speed(-0.01, 1.0) == 0.0
+
+
+def test_nobody_stops_off_the_edge_because_readings_were_wrong():
+    zigzag = Zigzag(1, CONFIG)
+    yes, still = np.array([True]), np.zeros(1)
+    told = []
+    for k, error in enumerate([0.1] * 8 + [0.04] * 2):
+        seen = np.array([float(k % 2)])
+        told.append(zigzag.speeds(still, np.array([error]), seen, yes, np.array([k == 0]))[0])
+    assert told == [0.4] * 9 + [0.0]
 
 
 def neighbours(pose, state, speed=None):
