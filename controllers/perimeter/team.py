@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controllers.perimeter import percepts
-from controllers.perimeter.approach import acquire, approach, edge_errors, onto, way_off
+from controllers.perimeter.approach import Edge, acquire, approach, way_off
 from controllers.perimeter.avoidance import Avoidance, Neighbours
 from controllers.perimeter.config import PerimeterConfig, even_factors
 from controllers.perimeter.doubt import Doubt
@@ -67,13 +67,13 @@ class PerimeterTeam:
         with np.errstate(invalid="ignore"):
             fresh = time - now.sent <= c.forget_after
         near = Neighbours(now.pose, now.heard[..., _SPEAKERS], fresh)
-        error, tangent = edge_errors(now.edge, c)
-        known = np.isfinite(error)
+        edge = Edge(now.edge, c)
+        known = np.isfinite(edge.error)
         self._seen_at = np.where(known, time, self._seen_at)
         place = now.pose[:, :2] + rotate(now.edge, now.pose[:, 2])
         self.relay.hear(now, fresh)
         self.relay.sense(known & np.isfinite(now.pose[:, 0]), place, time)
-        self._switch(now, error, tangent)
+        self._switch(now, edge.error, edge.tangent)
         state, tracks = self.state, self.state == TRACKING
         self._circles.add(now.pose, tracks)
 
@@ -81,15 +81,15 @@ class PerimeterTeam:
         roams = (state == SEARCHING) | (state == MOVING)
         self._boundary.active &= roams
         search = self._spiral.command(time, (state == SEARCHING) & ~self._boundary.active)
-        command = np.where((state == MOVING)[:, None], approach(now.pose, self._goal, c), search)
+        off = way_off(now.pose, self._goal)
+        command = np.where((state == MOVING)[:, None], approach(off, c), search)
         command = np.where((self._boundary.active & roams)[:, None], wall, command)
-        command = np.where((state == ACQUIRE)[:, None], acquire(now.edge, c), command)
-        command = np.where(tracks[:, None], self._track(now, near, error, tracks), command)
-        heading = np.where(state == MOVING, way_off(now.pose, self._goal), 0.0)
-        heading = np.nan_to_num(np.where(state == ACQUIRE, onto(now.edge, c), heading))
-        side = np.arctan2(now.edge[:, 1], now.edge[:, 0])
-        command = self._avoidance.apply(command, heading, side, state, near, now.body)
-        command = self._boundary.bound(now.pose, command, wall, roams)
+        command = np.where((state == ACQUIRE)[:, None], acquire(edge, c), command)
+        command = np.where(tracks[:, None], self._track(now, near, edge.error, tracks), command)
+        heading = np.where(state == MOVING, off, 0.0)
+        heading = np.nan_to_num(np.where(state == ACQUIRE, edge.onto, heading))
+        command = self._avoidance.apply(command, heading, edge.bearing, state, near, now.body)
+        command = self._boundary.bound(command, wall, roams)
         # who does not know where it is, or tracks without a sensor, stands still
         blind = ~np.isfinite(now.pose).all(axis=1) | ((state >= ACQUIRE) & np.isnan(now.inside))
         command[blind] = 0.0

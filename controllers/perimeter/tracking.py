@@ -76,7 +76,7 @@ class Zigzag:
 
         Args:
             speed: As the spacing rule has it (n,).
-            error: Of :func:`controllers.perimeter.approach.edge_errors` (n,) [m].
+            error: Of :class:`controllers.perimeter.approach.Edge` (n,) [m].
             inside: (n,).
             tracks: Who tracks (n,).
             joins: Who does since this step (n,).

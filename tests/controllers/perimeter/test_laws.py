@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from controllers.perimeter import PerimeterConfig
-from controllers.perimeter.approach import acquire, approach, edge_errors, onto
+from controllers.perimeter.approach import Edge, acquire, approach, way_off
 from controllers.perimeter.avoidance import Avoidance, Neighbours
 from controllers.perimeter.config import even_factor, tracked_radius
 from controllers.perimeter.doubt import Doubt
@@ -93,7 +93,7 @@ def test_who_turns_away_from_a_corner_does_so_until_clear_of_it(at):
 
 def test_the_potential_field_turns_the_short_way():
     pose = np.array([[0, 0, 3.0], [0, 0, -3.0]])
-    command = approach(pose, np.array([[-5.0, -0.5], [-5.0, 0.5]]), CONFIG)
+    command = approach(way_off(pose, np.array([[-5.0, -0.5], [-5.0, 0.5]])), CONFIG)
     assert command[0, 1] > 0 > command[1, 1]
     k = 0.3 / (2 * np.pi)
     assert command[0, 1] == pytest.approx(k * (np.arctan2(-0.5, -5.0) + 2 * np.pi - 3.0))
@@ -111,9 +111,10 @@ def test_acquire_ends_on_the_edge_anticlockwise_and_never_gets_inside(turn):
     pose, least = np.array([[13.0, 0.0, np.pi + turn]]), np.inf
     for _ in range(400):
         edge = edge_of(pose, 10.0)
-        pose = drive(pose, acquire(edge, CONFIG))
+        pose = drive(pose, acquire(Edge(edge, CONFIG), CONFIG))
         least = min(least, np.hypot(*pose[0, :2]) - 10.0)
-    error, tangent = edge_errors(edge_of(pose, 10.0), CONFIG)
+    found = Edge(edge_of(pose, 10.0), CONFIG)
+    error, tangent = found.error, found.tangent
     # on a circle a proportional law lags
     assert abs(error[0]) < 0.1
     assert abs(tangent[0]) < 0.15
@@ -125,10 +126,10 @@ def test_acquire_ends_on_the_edge_anticlockwise_and_never_gets_inside(turn):
 def test_who_acquires_touches_nothing_from_whatever_heading(off, heading):
     pose, least = np.array([[10.0 + off, 0.0, heading]]), np.inf
     for _ in range(600):
-        pose = drive(pose, acquire(edge_of(pose, 10.0), CONFIG))
+        pose = drive(pose, acquire(Edge(edge_of(pose, 10.0), CONFIG), CONFIG))
         least = min(least, np.hypot(*pose[0, :2]) - 10.0)
     assert least > 0.43  # what a truck reaches from its rear axle
-    assert abs(edge_errors(edge_of(pose, 10.0), CONFIG)[0][0]) < 0.1
+    assert abs(Edge(edge_of(pose, 10.0), CONFIG).error[0]) < 0.1
 
 
 @pytest.mark.parametrize(("radius", "holds"), [(10.0, True), (20.0, True), (3.0, False)])
@@ -360,7 +361,8 @@ def test_who_acquires_gets_past_one_who_stands_on_the_perimeter_for_ever(angle, 
     for _ in range(900):
         edge = edge_of(pose, 10.0)
         known, ways = neighbours(pose, state, speed), np.arctan2(edge[:, 1], edge[:, 0])
-        wanted, heading = acquire(edge, CONFIG), onto(edge, CONFIG)
+        seen = Edge(edge, CONFIG)
+        wanted, heading = acquire(seen, CONFIG), seen.onto
         command = avoidance.apply(wanted, heading, ways, state, known, nobody)
         command[1] = 0.0
         speed = command[:, 0]
@@ -370,7 +372,7 @@ def test_who_acquires_gets_past_one_who_stands_on_the_perimeter_for_ever(angle, 
     assert least > 2.0
     assert deepest < -0.43
     # nothing keeps it from the edge any more
-    assert edge_errors(edge_of(pose, 10.0), CONFIG)[0][0] == pytest.approx(0.0, abs=0.15)
+    assert Edge(edge_of(pose, 10.0), CONFIG).error[0] == pytest.approx(0.0, abs=0.15)
 
 
 def test_circles_are_found_from_tracks():
