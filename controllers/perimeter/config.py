@@ -49,6 +49,7 @@ class PerimeterConfig:
         sense_range: D_sen, at which the perimeter is acquired [m].
         look_ahead: Of the sensor's spot before the rear axle [m].
         look_left: And to the left [m].
+        nose_margin: Room to turn below which whoever follows the perimeter turns away from it [m].
         hand_over_error: |error| below which bang-bang takes over [m].
         hand_over_angle: |heading error| below which it does [rad].
         lose_after: Without a perimeter in range for so long, it is lost [s].
@@ -94,6 +95,7 @@ class PerimeterConfig:
     sense_range: float = 3.0
     look_ahead: float = 0.5
     look_left: float = 0.6
+    nose_margin: float = 0.15
     hand_over_error: float = 0.2
     hand_over_angle: float = 0.35
     lose_after: float = 5.0

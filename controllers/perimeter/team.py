@@ -86,6 +86,10 @@ class PerimeterTeam:
         command = np.where((self._boundary.active & roams)[:, None], wall, command)
         command = np.where((state == ACQUIRE)[:, None], acquire(edge, c), command)
         command = np.where(tracks[:, None], self._track(now, near, edge.error, tracks), command)
+        # a bay: what comes next is ahead of it before it is nearest (ours)
+        with np.errstate(invalid="ignore"):
+            bay = (state >= ACQUIRE) & (edge.bearing > 0) & (now.room < c.nose_margin)
+        command = np.where(bay[:, None], [c.least_speed, -c.top_turn], command)
         heading = np.where(state == MOVING, off, 0.0)
         heading = np.nan_to_num(np.where(state == ACQUIRE, edge.onto, heading))
         command = self._avoidance.apply(command, heading, edge.bearing, state, near, now.body)

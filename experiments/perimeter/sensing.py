@@ -6,7 +6,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from controllers.perimeter.percepts import SPOKEN, Percepts, foot_of_edge, nearest_of_kind
+from controllers.perimeter.percepts import (
+    SPOKEN,
+    Percepts,
+    foot_of_edge,
+    nearest_of_kind,
+    room_to_turn,
+)
 from controllers.perimeter.vision import inside
 from experiments.perimeter.worlds import Scene
 from mjmr.bus import Bus
@@ -28,7 +34,8 @@ COLUMNS = 72
 FAN_HEIGHT = 0.2  # m, above the floor: what it sees is the spill's side and other trucks
 POSE, EDGE, BODY, INSIDE = "pose", "edge", "body", "inside"
 IDENTIFIERS = {INSIDE: 0x100, EDGE: 0x110, BODY: 0x120, POSE: 0x130}
-SIZES = {INSIDE: 1, EDGE: 8, BODY: 8, POSE: 12}  # bytes
+SIZES = {INSIDE: 1, EDGE: 12, BODY: 8, POSE: 12}  # bytes
+TURN, NOSE = 0.67, np.array([0.4, 0.2])  # m: sharpest turn at 0.3 rad/s, and what it must not touch
 STALE = 0.5  # s: what is older counts as missing
 
 
@@ -77,7 +84,10 @@ class Senses:
         at = simulation.rays.mounts(site)[0]
 
         def edge() -> Array:
-            return foot_of_edge(arc.read(), arc.angles, PILLAR, at, SENSE)
+            looks = arc.read()
+            foot = foot_of_edge(looks, arc.angles, PILLAR, at, SENSE)
+            room = room_to_turn(looks, arc.angles, PILLAR, at, TURN, NOSE)
+            return np.column_stack([foot, room])
 
         def body() -> Array:
             return nearest_of_kind(arc.read(), arc.angles, ROBOT, at, SEE)
@@ -119,6 +129,6 @@ class Senses:
             # the clock is behind the newest there can be
             sent[~on] = np.nan
         return Percepts(
-            time=time, pose=read[POSE], edge=read[EDGE], inside=read[INSIDE], body=read[BODY],
-            heard=heard, sent=sent,
+            time=time, pose=read[POSE], edge=read[EDGE][:, :2], inside=read[INSIDE],
+            room=read[EDGE][:, 2], body=read[BODY], heard=heard, sent=sent,
         )  # fmt: skip

@@ -9,7 +9,7 @@ from controllers.perimeter.avoidance import Avoidance, Neighbours
 from controllers.perimeter.config import even_factor, tracked_radius
 from controllers.perimeter.doubt import Doubt
 from controllers.perimeter.estimate import TrackedCircles, circle
-from controllers.perimeter.percepts import foot_of_edge, nearest_of_kind
+from controllers.perimeter.percepts import foot_of_edge, nearest_of_kind, room_to_turn
 from controllers.perimeter.spiral import Boundary, Spiral
 from controllers.perimeter.states import ACQUIRE, MOVING, TRACKING
 from controllers.perimeter.tracking import Zigzag, bang_bang, spacing
@@ -405,6 +405,26 @@ def test_the_edge_is_found_from_rays_with_noise():
     spread = [np.std(np.arctan2(*p.T[::-1])) for p in (foot, point)]
     assert spread[0] < 0.5 * spread[1]
     assert np.isnan(foot_of_edge(looks, angles, 4, mount, 0.5)).all()
+
+
+@pytest.mark.parametrize(("ahead", "room"), [(1.5, 0.31), (1.1, 0.14), (0.5, -0.43)])
+def test_room_to_turn_is_what_a_wall_ahead_leaves_of_the_sharpest_turn(ahead, room):
+    """On a straight edge 0.6 m to the left, with another across it ahead."""
+    angles = np.radians(np.arange(-180.0, 180.0, 2.0))
+    with np.errstate(divide="ignore"):
+        left = np.where(np.sin(angles) > 1e-9, 0.6 / np.sin(angles), np.inf)
+        across = np.where(np.cos(angles) > 1e-9, ahead / np.cos(angles), np.inf)
+    kind, mount, nose = 4, np.zeros(3), np.array([0.4, 0.2])
+    alone = np.stack([left, np.where(np.isfinite(left), kind, 0)], axis=-1)
+    assert room_to_turn(alone[None], angles, kind, mount, 0.67, nose)[0] == pytest.approx(
+        0.6 + 0.67 - np.hypot(0.4, 0.87), abs=0.02
+    )
+    ranges = np.minimum(left, across)
+    looks = np.stack([ranges, np.where(np.isfinite(ranges), kind, 0)], axis=-1)
+    found = room_to_turn(looks[None], angles, kind, mount, 0.67, nose)[0]
+    assert found == pytest.approx(room, abs=0.02)
+    others = np.stack([ranges, np.full(len(angles), 1)], axis=-1)
+    assert room_to_turn(others[None], angles, kind, mount, 0.67, nose)[0] == np.inf
 
 
 def test_red_is_told_from_grey_and_other_colours():
