@@ -87,9 +87,11 @@ study = Study(
         ),
         Parameter(
             "heard",
-            "of the leader (formation), a tick old: moved on by the speeds told with it, or plain",
+            "of the leader (formation), a tick old: moved on by the speeds told with it, or plain; "
+            "nothing: followers see two poles on the leader with a camera, by which they estimate "
+            "its speeds",
             "extrapolated",
-            ("extrapolated", "plain"),
+            ("extrapolated", "plain", "nothing"),
         ),
         Parameter(
             "dt_ms", "largest physics timestep; it divides 0.1 s", 10.0, unit="ms", least=0.1

@@ -40,6 +40,11 @@ def check(condition: Mapping[str, Any]) -> None:
                 f"errors of task=formation count from {SETTLE:g} s on: duration must be more than "
                 f"{SETTLE:g} s; got {condition['duration']:g} s"
             )
+        if condition["heard"] == "nothing" and condition["d_com"] != _usual("d_com"):
+            raise InvalidInputError(
+                "followers that hear nothing have no radio: with heard=nothing leave d_com at "
+                f"{format_value(_usual('d_com'))}; got {format_value(condition['d_com'])}"
+            )
         return
     largest_radius(condition)
     _robots(condition)
@@ -67,6 +72,12 @@ def limit_of(condition: Mapping[str, Any]) -> float:
     if growth > 0:
         return max(LIMIT_GROWTH, radius)
     return min(LEAST, radius) if growth < 0 else radius
+
+
+def _usual(name: str) -> Any:
+    from experiments.perimeter import study
+
+    return {p.name: p.default for p in study.parameters}[name]
 
 
 def _ignored(condition: Mapping[str, Any]) -> None:

@@ -9,6 +9,8 @@ import numpy as np
 from experiments.perimeter.claims_beyond import beyond
 from experiments.perimeter.claims_later import later
 from experiments.perimeter.claims_room import in_the_middle
+from experiments.perimeter.claims_seen import seen
+from experiments.perimeter.claims_sweep import swept
 from experiments.perimeter.conditions import DRIVEN, JOIN, LITERAL, N1, STAY
 from experiments.perimeter.evidence import (
     both,
@@ -36,7 +38,9 @@ def claims() -> list[Claim]:
         *_failures(),
         *beyond(),
         *later(),
+        *swept(),
         *in_the_middle(),
+        *seen(),
     ]
 
 

@@ -8,10 +8,10 @@ import numpy as np
 
 from controllers.consensus.leader_follower import SeparationBearing
 from experiments.perimeter.checks import SETTLE
-from mjmr.geometry import rotate, wrap_angle
-from mjmr.radio import Radio
+from experiments.perimeter.leader_heard import LeaderHeard
+from experiments.perimeter.leader_seen import LeaderSeen
+from mjmr.geometry import wrap_angle
 from mjmr.robots.tamiya_txt1 import TamiyaTXT1
-from mjmr.sensors.localizer import Localizer
 from mjmr.world import World
 
 PERIOD = 0.1
@@ -26,9 +26,7 @@ AHEAD = 0.3  # m, of the followers' reference point before the axle
 def formation(condition: Mapping[str, Any], seed: int) -> dict[str, Any]:
     """Errors of two followers that start off their places and follow a leader on a path.
 
-    Where the leader is comes from poses that all three report by radio, with noise; the leader's
-    speeds are what it was commanded, by radio. What is heard is a tick old: the law takes it as it
-    is (``heard=plain``), or moved on by the speeds that came with it (``heard=extrapolated``).
+    They hear where it is and what it was commanded, or (``heard=nothing``) see it.
     """
     rng = np.random.default_rng(np.random.SeedSequence([seed, 14]))
     world = World.rectangle(2 * HALF_LONG, 2 * HALF_WIDE, wall_height=0.6, floor="concrete")
@@ -38,9 +36,12 @@ def formation(condition: Mapping[str, Any], seed: int) -> dict[str, Any]:
     yaws = rng.uniform(-0.2, 0.2, 2)
     poses = np.vstack([start, np.column_stack([places, yaws])])
     trucks = world.add_group(TamiyaTXT1, poses)
-    trucks.mount(Localizer(rate=10.0, position_noise=0.005, yaw_noise=0.005), "localizer")
+    # what the followers go by
+    leader: Any = (LeaderSeen if condition["heard"] == "nothing" else LeaderHeard)(
+        world, trucks, condition
+    )
     simulation, meter = _simulation(condition, world, seed)
-    radio = Radio(simulation, range=condition["d_com"])
+    leader.start(simulation)
     law = [SeparationBearing(separation=SEPARATION, bearing=float(b), ahead=AHEAD)
            for b in BEARINGS]  # fmt: skip
     track: list[np.ndarray] = []
@@ -49,20 +50,12 @@ def formation(condition: Mapping[str, Any], seed: int) -> dict[str, Any]:
     with contextlib.closing(simulation):
         for now in simulation.ticks(duration):
             leads = np.array([SPEED, _turn(path, now)])
-            pose = trucks.localizer.read()
+            seen, speeds = leader.step(now, leads)
             command = np.zeros((3, 2))
             command[0] = leads
-            if radio.messages_sent.any() and np.isfinite(pose).all():
-                told, sent = radio.latest()
-                heard = told[1:, 0]  # what each follower heard of the leader
-                if condition["heard"] == "extrapolated":
-                    _move_on(heard, now - sent[1:, 0])
-                way = rotate(heard[:, :2] - pose[1:, :2], -pose[1:, 2])
-                seen = np.column_stack([way, wrap_angle(heard[:, 2] - pose[1:, 2])])
-                for k in range(2):
-                    if np.isfinite(seen[k]).all():
-                        command[k + 1] = law[k].command(seen[k : k + 1], heard[k : k + 1, 3:])[0]
-            radio.broadcast_arrays(np.column_stack([pose, np.tile(leads, (3, 1))]))
+            for k in range(2):
+                if np.isfinite(seen[k]).all():
+                    command[k + 1] = law[k].command(seen[k : k + 1], speeds[k : k + 1])[0]
             trucks.drive(command)
     return {"time_s": duration, **_errors(np.stack(track)), **_contacts(meter)}
 
@@ -91,12 +84,6 @@ def _turn(path: str, now: float) -> float:
         way = min(since, abs(since - lap), 2.0 * lap - since) / (RAMP / 2.0)
         share = min(way, (now - 10.0) / RAMP, 1.0)
     return SPEED / RADIUS * share * side
-
-
-def _move_on(heard: np.ndarray, age: np.ndarray) -> None:
-    """Put the leader (k, 5) where it has got to in ``age`` [s] by the speeds it told."""
-    heard[:, 2] += heard[:, 4] * age
-    heard[:, :2] += rotate(np.column_stack([heard[:, 3] * age, 0.0 * age]), heard[:, 2])
 
 
 def _errors(track: np.ndarray) -> dict[str, float]:

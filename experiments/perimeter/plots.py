@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from controllers.perimeter.states import STATES
+from experiments.perimeter.sizes import LONG
 from mjmr import statistics
 from mjmr.plot import figure, flag_rows, interval_line
 from mjmr.table import Table
@@ -24,6 +25,9 @@ def plots(table: Table, folder: Path) -> list[Path]:
     sweep = table.where(task="stay", mode="unicycle", robots=5, growth=0.0)
     if sweep.finished and len(sweep.distinct("factor")) > 2:
         written.append(_spacing(sweep, folder))
+    counts = table.where(task="stay", mode="unicycle", factor=0.0, growth=0.0, duration=LONG)
+    if counts.finished and len(counts.distinct("robots")) > 2:
+        written.append(_counts(counts, folder))
     ranges = table.where(task="join", mode="unicycle")
     if ranges.finished and len(ranges.distinct("d_com")) > 1:
         written.append(_ranges(ranges, folder))
@@ -85,6 +89,17 @@ def _spacing(rows: Table, folder: Path) -> Path:
         axes.plot(order, moving, marker="s", label="share of the last 30 s in which anybody moves")
         axes.axhline(1.1, color="0.6", linewidth=1)
         axes.legend()
+    return path
+
+
+def _counts(rows: Table, folder: Path) -> Path:
+    path = folder / "robots.svg"
+    title = f"Until the team stands still, unicycle bodies, static disc of 10 m ({rows.finished})"
+    with figure(path, title, "robots", "time [s]") as axes:
+        found: dict[int, Any] = {int(n): part for n, part in rows.split("robots")}
+        order = sorted(found)
+        times = [statistics.mean(found[n].values("stopped_at_s")) for n in order]
+        interval_line(axes, order, times, "mean")
     return path
 
 

@@ -11,8 +11,12 @@ SIXTH = 1.0  # of the chord of six: d_des is not below it, and they may stop
 LATER = 660.0  # s: 60 s, then 600 s to be even again
 AFTERWARDS = "after quick's seed 0 and half a standard run had been seen"  # of claims, on them
 PATHS = ("straight", "circle", "eight")
+TIGHT, ROOMY = (0.6, 0.7, 0.8, 0.9, 0.95), (1.05, 1.1, 1.2, 1.3, 1.4)
+SWEEP = (*TIGHT, 1.0, *ROOMY)  # d_des in even chords
+COUNTS = (3, 4, 5, 6, 7, 8)  # robots
+LONG = 900.0  # s: eight stop after 700
+SEEN = ("straight", "circle", "eight-middle", "eight-smooth-middle")  # by camera
 MIDDLE = ("eight-middle", "eight-smooth-middle")  # where no wall is in the way
-SWEEP = (0.6, 0.7, 0.8, 0.9, 0.95, 1.0, 1.05, 1.1, 1.2, 1.3, 1.4)
 RANGES = (0.0, 10.0, 25.0, 150.0)  # m, of the radio
 
 
@@ -52,7 +56,10 @@ def grids(join: int, few: int, sweep: int) -> tuple[Grid, ...]:
         Grid(task="formation", path=PATHS, heard="plain", seeds=few),
         Grid(task="envelope", seeds=few),
         Grid(**JOIN, mode="unicycle", d_com=RANGES, seeds=sweep),
+        Grid(**STAY, mode="unicycle", factor=SWEEP, seeds=few),
+        Grid(**{**STAY, "duration": LONG}, mode="unicycle", robots=(2, *COUNTS), seeds=few),
         Grid(task="formation", path=MIDDLE, seeds=few),
+        Grid(task="formation", path=SEEN, heard="nothing", seeds=few),
         Grid(task="formation", path=MIDDLE[0], heard="plain", seeds=few),
     )  # fmt: skip
 
@@ -72,12 +79,7 @@ QUICK = Size(
 STANDARD = Size("standard", grids=grids(20, 3, 8), default_seeds=3, expected_minutes=17.0)
 FULL = Size(
     "full",
-    grids=(
-        *grids(60, 10, 20),
-        Grid(**STAY, mode="unicycle", factor=SWEEP, seeds=5),
-        Grid(**STAY, mode="unicycle", robots=(2, 3, 4, 6, 7, 8), seeds=5),
-    ),
+    grids=grids(60, 10, 20),
     default_seeds=10,
     expected_minutes=90.0,
-    note="with sweeps of d_des and of the number of robots on unicycle bodies",
 )

@@ -58,13 +58,17 @@ class RayScene(Stage):
         self._mask = np.zeros(mujoco.mjNGROUP, dtype=np.uint8)
         row_of = {int(geom): row for row, geom in enumerate(self._table.geoms)}
         self._pillar_rows = [row_of[int(geom)] for geom in self.pillars.geoms]
+        self._resize()
 
     def show(self, state: Any) -> None:
         """Put everything where it was when ``simulation.visible_state()`` returned ``state``."""
         super().show(state)
-        if self.pillars.any:
-            self.pillars.resize(self.model, self.time)
-            self._table.sizes[self._pillar_rows, 0] = self.model.geom_size[self.pillars.geoms, 0]
+        if self.pillars.change:
+            self._resize()
+
+    def _resize(self) -> None:
+        self.pillars.resize(self.model, self.time)
+        self._table.sizes[self._pillar_rows, 0] = self.model.geom_size[self.pillars.geoms, 0]
 
     def sites(self, prefixes: Sequence[str], names: Sequence[str]) -> NDArray[np.int64]:
         """Sites of robots (n, k) by their names in the robot's model."""

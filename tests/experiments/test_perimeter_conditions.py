@@ -31,6 +31,7 @@ BAD = [
     ("start=even robots=19", "at most 18 do"),
     ("task=envelope duration=30", "does not read duration"),
     ("task=formation failure=radio", "does not read failure"),
+    ("task=formation heard=nothing d_com=10", "have no radio"),
     ("path=circle", "does not read path"),
     ("sensing=camera wrong=0.2", "wrong is of readings of the ray"),
 ]
@@ -88,6 +89,11 @@ def test_who_hears_plainly_and_who_moves_it_on_are_two_laws():
         for heard in ("extrapolated", "plain")
     ]
     assert errors[0]["place_rms_m"] < errors[1]["place_rms_m"] < 0.3
+
+
+def test_who_hears_nothing_follows_what_its_camera_sees():
+    condition = study.condition(task="formation", path="circle", heard="nothing", duration=33.0)
+    assert trial(condition, 1000)["place_rms_m"] < 0.1
 
 
 def test_the_eight_changes_sides_at_once_and_the_smooth_one_does_not():
