@@ -24,6 +24,7 @@ class PerimeterConfig:
         period: Between two steps [s].
         search_speed: [m/s].
         track_speed: [m/s]; also of ACQUIRE.
+        doubt_speed: While tracking by readings that cannot all be right, at most [m/s].
         top_turn: Largest turn rate [rad/s].
         track_turn: w_t of the bang-bang law at ``track_speed`` [rad/s].
         spiral_turn: a, with which a spiral begins [rad/s].
@@ -48,6 +49,7 @@ class PerimeterConfig:
         sense_range: D_sen, at which the perimeter is acquired [m].
         look_ahead: Of the sensor's spot before the rear axle [m].
         look_left: And to the left [m].
+        nose_margin: Room to turn below which whoever follows the perimeter turns away from it [m].
         hand_over_error: |error| below which bang-bang takes over [m].
         hand_over_angle: |heading error| below which it does [rad].
         lose_after: Without a perimeter in range for so long, it is lost [s].
@@ -56,7 +58,8 @@ class PerimeterConfig:
         proportional: k_p [1/s].
         dead_band: epsilon [m].
         spacing: ``repaired``: the front robot of a close pair moves; ``literal``: equation 8.
-        resume_depth: Of the look-ahead point inside at which a stopped robot moves on [m].
+        resume_depth: Of the edge, inside or outside, at which a stopped robot moves on [m].
+        settle_error: Of the edge beside it, beyond which none may stop after a zigzag [m].
         news_timeout: After which a told location that shows nothing is given up [s]; besides the
             way there at search speed.
         news_age: Of news that nobody sets out for any more [s].
@@ -69,6 +72,7 @@ class PerimeterConfig:
     period: float = 0.1
     search_speed: float = 1.0
     track_speed: float = 0.4
+    doubt_speed: float = 0.2
     top_turn: float = 0.3
     track_turn: float = 0.1
     spiral_turn: float = 0.3
@@ -93,6 +97,7 @@ class PerimeterConfig:
     sense_range: float = 3.0
     look_ahead: float = 0.5
     look_left: float = 0.6
+    nose_margin: float = 0.15
     hand_over_error: float = 0.2
     hand_over_angle: float = 0.35
     lose_after: float = 5.0
@@ -102,6 +107,7 @@ class PerimeterConfig:
     dead_band: float = 0.01
     spacing: str = "repaired"
     resume_depth: float = 0.15
+    settle_error: float = 0.05
     news_timeout: float = 60.0
     news_age: float = 120.0
     forget_after: float = 1.0

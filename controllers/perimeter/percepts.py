@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mjmr.errors import InvalidInputError
+from mjmr.geometry import wrap_angle
 
 Array = NDArray[np.float64]
 SPOKEN = ("x", "y", "yaw", "state", "news_x", "news_y", "news_at", "news_of", "hops", "radius",
@@ -23,6 +24,7 @@ class Percepts:
         pose: (n, 3) [m, m, rad], world frame; NaN rows: not known.
         edge: Nearest point of a perimeter (n, 2) [m], frame of the robot; NaN rows: none in range.
         inside: Whether the look-ahead point is inside (n,): 1 or 0, NaN: nothing is known.
+        room: Of the perimeter beyond what a sharp turn to the right sweeps (n,) [m]; NaN: unknown.
         body: Nearest robot seen (n, 2) [m], frame of the robot; NaN rows: none.
         heard: Newest row of ``SPOKEN`` heard (n, n, c), receiver first; NaN: never.
         sent: When that was sent (n, n) [s].
@@ -32,6 +34,7 @@ class Percepts:
     pose: Array
     edge: Array
     inside: Array
+    room: Array
     body: Array
     heard: Array
     sent: Array
@@ -42,6 +45,7 @@ class Percepts:
             "pose": (n, 3),
             "edge": (n, 2),
             "inside": (n,),
+            "room": (n,),
             "body": (n, 2),
             "heard": (n, n, len(SPOKEN)),
             "sent": (n, n),
@@ -109,3 +113,28 @@ def foot_of_edge(looks: Array, angles: Array, kind: int, mount: Array, reach: fl
     normal *= np.where((normal * middle).sum(axis=1) < 0, -1.0, 1.0)[:, None]
     foot = normal * (((middle + mount[:2]) * normal).sum(axis=1))[:, None]
     return np.where(found[:, None], foot, np.nan)
+
+
+def room_to_turn(looks: Array, angles: Array, kind: int, mount: Array, radius: float, nose: Array
+                 ) -> Array:  # fmt: skip
+    """How far a perimeter ahead or to the left is from what a turn to the right sweeps (n,) [m].
+
+    Args:
+        looks: Range [m] and kind of every ray (n, c, 2).
+        angles: Of the rays (c,) [rad].
+        kind: Of the perimeter.
+        mount: Where on the robot the fan begins and its yaw (3,) [m, m, rad].
+        radius: Of the turn [m].
+        nose: The robot's front left corner (2,) [m].
+
+    Returns:
+        inf where no ray from 45 degrees to the right to 90 to the left meets one.
+    """
+    way = wrap_angle(angles + mount[2])
+    part = (way > -np.pi / 4) & (way < np.pi / 2)
+    looks, way = looks[:, part], way[part]
+    met = looks[..., 1] == kind
+    length = np.where(met, looks[..., 0], 0.0)
+    x, y = mount[0] + length * np.cos(way), mount[1] + length * np.sin(way)
+    room = np.hypot(x, y + radius) - np.hypot(nose[0], radius + nose[1])
+    return np.where(met, room, np.inf).min(axis=1)

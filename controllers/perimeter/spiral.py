@@ -54,6 +54,9 @@ class Boundary:
         self._config = config
         self.active = np.zeros(n, dtype=bool)
         self._sense = np.ones(n)
+        # speeds at which a turn stays off, left and right
+        self._limits = np.zeros(n), np.zeros(n)
+        self._known = np.zeros(n, dtype=bool)
 
     def command(self, pose: Array) -> Array:
         """(forward, turn) (n, 2) of those who are ``active``, which is updated.
@@ -77,6 +80,7 @@ class Boundary:
         east, north, west, south = beside.T * 1.0
         error = wrap_angle(np.arctan2(south - north, west - east) - yaw)
         left, right = self._speeds(walls, yaw, 1.0), self._speeds(walls, yaw, -1.0)
+        self._limits, self._known = (left, right), np.isfinite(x)
         short = np.where(error < 0, -1.0, 1.0)
         roomier = np.where(left > right, 1.0, np.where(right > left, -1.0, short))
         # a corner's other wall, met while turning, must not turn it back towards the first
@@ -87,23 +91,21 @@ class Boundary:
         forward = np.where(turn < 0, right, left)
         return np.column_stack([forward, c.top_turn * turn])
 
-    def bound(self, pose: Array, command: Array, wanted: Array, roams: NDArray[np.bool_]) -> Array:
+    def bound(self, command: Array, wanted: Array, roams: NDArray[np.bool_]) -> Array:
         """Commands (n, 2) that keep off the boundary whatever others made of them.
 
+        Robots are where :meth:`command` of this step was told.
+
         Args:
-            pose: (n, 3).
             command: After everything that changed it (n, 2).
             wanted: Of :meth:`command` at this step (n, 2).
             roams: Who heeds the boundary (n,).
         """
         c = self._config
-        x0, y0, x1, y1 = c.bounds
-        x, y, yaw = pose.T
-        walls = np.column_stack([x1 - x, y1 - y, x - x0, y - y0])
-        left, right = self._speeds(walls, yaw, 1.0), self._speeds(walls, yaw, -1.0)
+        left, right = self._limits
         forward, turn = command.T
         limit = np.where(turn < 0, right, np.where(turn > 0, left, np.maximum(left, right)))
-        heeds = roams & self.active & np.isfinite(x)
+        heeds = roams & self.active & self._known
         # where no speed leaves the margin, nobody is given way to
         turn = np.where(heeds & (limit <= c.least_speed), wanted[:, 1], turn)
         forward = np.where(heeds, np.minimum(forward, limit), forward)

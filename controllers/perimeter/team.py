@@ -4,9 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controllers.perimeter import percepts
-from controllers.perimeter.approach import acquire, approach, edge_errors, onto, way_off
+from controllers.perimeter.approach import Edge, acquire, approach, way_off
 from controllers.perimeter.avoidance import Avoidance, Neighbours
 from controllers.perimeter.config import PerimeterConfig, even_factors
+from controllers.perimeter.doubt import Doubt
 from controllers.perimeter.estimate import TrackedCircles
 from controllers.perimeter.percepts import Percepts
 from controllers.perimeter.relay import Relay
@@ -53,6 +54,7 @@ class PerimeterTeam:
         self.desired = np.full(n, config.desired or np.nan)
         self._spiral, self._boundary = Spiral(n, config, rng), Boundary(n, config)
         self._avoidance, self._zigzag = Avoidance(n, config), Zigzag(n, config)
+        self._doubt = Doubt(n, config)
         self._circles = TrackedCircles(n)
         self._seen_at = np.full(n, -np.inf)
         self._deadline = np.full(n, np.inf)
@@ -65,13 +67,13 @@ class PerimeterTeam:
         with np.errstate(invalid="ignore"):
             fresh = time - now.sent <= c.forget_after
         near = Neighbours(now.pose, now.heard[..., _SPEAKERS], fresh)
-        error, tangent = edge_errors(now.edge, c)
-        known = np.isfinite(error)
+        edge = Edge(now.edge, c)
+        known = np.isfinite(edge.error)
         self._seen_at = np.where(known, time, self._seen_at)
         place = now.pose[:, :2] + rotate(now.edge, now.pose[:, 2])
         self.relay.hear(now, fresh)
         self.relay.sense(known & np.isfinite(now.pose[:, 0]), place, time)
-        self._switch(now, error, tangent)
+        self._switch(now, edge.error, edge.tangent)
         state, tracks = self.state, self.state == TRACKING
         self._circles.add(now.pose, tracks)
 
@@ -79,15 +81,19 @@ class PerimeterTeam:
         roams = (state == SEARCHING) | (state == MOVING)
         self._boundary.active &= roams
         search = self._spiral.command(time, (state == SEARCHING) & ~self._boundary.active)
-        command = np.where((state == MOVING)[:, None], approach(now.pose, self._goal, c), search)
+        off = way_off(now.pose, self._goal)
+        command = np.where((state == MOVING)[:, None], approach(off, c), search)
         command = np.where((self._boundary.active & roams)[:, None], wall, command)
-        command = np.where((state == ACQUIRE)[:, None], acquire(now.edge, c), command)
-        command = np.where(tracks[:, None], self._track(now, near, error, tracks), command)
-        heading = np.where(state == MOVING, way_off(now.pose, self._goal), 0.0)
-        heading = np.nan_to_num(np.where(state == ACQUIRE, onto(now.edge, c), heading))
-        side = np.arctan2(now.edge[:, 1], now.edge[:, 0])
-        command = self._avoidance.apply(command, heading, side, state, near, now.body)
-        command = self._boundary.bound(now.pose, command, wall, roams)
+        command = np.where((state == ACQUIRE)[:, None], acquire(edge, c), command)
+        command = np.where(tracks[:, None], self._track(now, near, edge.error, tracks), command)
+        # a bay: what comes next is ahead of it before it is nearest (ours)
+        with np.errstate(invalid="ignore"):
+            bay = (state >= ACQUIRE) & (edge.bearing > 0) & (now.room < c.nose_margin)
+        command = np.where(bay[:, None], [c.least_speed, -c.top_turn], command)
+        heading = np.where(state == MOVING, off, 0.0)
+        heading = np.nan_to_num(np.where(state == ACQUIRE, edge.onto, heading))
+        command = self._avoidance.apply(command, heading, edge.bearing, state, near, now.body)
+        command = self._boundary.bound(command, wall, roams)
         # who does not know where it is, or tracks without a sensor, stands still
         blind = ~np.isfinite(now.pose).all(axis=1) | ((state >= ACQUIRE) & np.isnan(now.inside))
         command[blind] = 0.0
@@ -121,8 +127,9 @@ class PerimeterTeam:
         wanted = np.where(np.isfinite(desired), desired, 1e3)
         forward = spacing(apart, near.bearing, wanted, c)
         joins = tracks & (self.entered == now.time)
-        forward = self._zigzag.speeds(forward, error, now.inside, tracks, joins)
-        return np.column_stack([forward, bang_bang(now.inside, forward, c)])
+        inside = self._doubt.believed(now.inside, self._speed, tracks)
+        forward = self._doubt.limit(self._zigzag.speeds(forward, error, inside, tracks, joins))
+        return np.column_stack([forward, bang_bang(inside, forward, c)])
 
     def _estimate(self, now: Percepts, others: Flags) -> None:
         """d_des from the number of robots that track and the mean of their circles' radii."""

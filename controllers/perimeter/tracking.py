@@ -54,9 +54,10 @@ class Zigzag:
     """Keeps a robot at track speed until it has crossed the edge so many times and is inside.
 
     A stopped robot that a growing edge has got deep into makes one whole zigzag (in, out, in):
-    otherwise it resumes at every touch and winds away from the perimeter (our check). One that has
-    just begun to track makes two, so that it does not stop where it took over, beside the edge
-    (ours).
+    otherwise it resumes at every touch and winds away from the perimeter (our check). So does one
+    from which a shrinking edge has gone back as far (ours). One that has just begun to track makes
+    two, so that it does not stop where it took over, beside the edge; crossings may have been wrong
+    readings, and nobody stops before the edge itself is near (ours).
 
     Attributes:
         active: Who is at it (n,).
@@ -75,19 +76,21 @@ class Zigzag:
 
         Args:
             speed: As the spacing rule has it (n,).
-            error: Of :func:`controllers.perimeter.approach.edge_errors` (n,) [m].
+            error: Of :class:`controllers.perimeter.approach.Edge` (n,) [m].
             inside: (n,).
             tracks: Who tracks (n,).
             joins: Who does since this step (n,).
         """
         with np.errstate(invalid="ignore"):
-            deep = (error < -self._config.resume_depth) & (inside > 0.5)
+            stray = np.abs(error) > self._config.resume_depth
+            stray &= (error < 0) == (inside > 0.5)
             crossed = np.abs(inside - self._was) > 0.5
-        begins = tracks & (speed == 0.0) & deep & ~self.active
+            done = np.abs(error) < self._config.settle_error
+        begins = tracks & (speed == 0.0) & stray & ~self.active
         left = self._crossings - crossed
         left = np.where(begins, 2, left)
         self._crossings = np.where(joins, 4, left)
-        done = (self._crossings <= 0) & (inside > 0.5)
+        done &= (self._crossings <= 0) & (inside > 0.5)
         self.active = tracks & (begins | joins | (self.active & ~done))
         self._was = np.where(np.isfinite(inside), inside, self._was)
         return np.where(self.active, self._config.track_speed, speed)

@@ -58,6 +58,7 @@ class Log:
         self._poses: list[np.ndarray] = []
         self._states: list[np.ndarray] = []
         self._agree: list[np.ndarray] = []
+        self._heard: list[np.ndarray] = []  # every second
         self._meter = None
         if condition["mode"] != "unicycle":
             from mjmr.metrics import ContactMeter
@@ -73,6 +74,8 @@ class Log:
         self._times.append(simulation.time)
         self._poses.append(simulation.truth.poses(self._scene.trucks))
         self._states.append(team.state.copy())
+        if len(self._times) % 10 == 1:
+            self._heard.append(self.links() > 0)
         self._drift.see()
         entering = (team.state == MOVING) & np.isnan(team.joined)
         self._hops = np.where(entering, np.maximum(self._hops, team.hops), self._hops)
@@ -120,7 +123,7 @@ class Log:
             **self._agreement(),
             **self._drifted(poses[-1]),
             "states": _runs(times, states),
-            "graph": self._graph(poses, times),
+            **self._graphs(poses, times),
         }
 
     def _drifted(self, poses: Any) -> dict[str, float]:
@@ -272,16 +275,20 @@ class Log:
         same = float((pairs[0] == pairs[1]).mean()) if pairs.size else -1.0
         return {"compared": int(pairs.shape[1]), "agree": same}
 
-    def _graph(self, poses: Any, times: Any) -> str:
-        """Who is within radio range of whom, as runs: ``i-j:from-to`` [s], space between."""
-        reach = self._condition["d_com"]
-        n, told = poses.shape[1], []
-        for i in range(n):
-            for j in range(i + 1, n):
-                way = poses[::10, i, :2] - poses[::10, j, :2]
-                near = np.hypot(way[:, 0], way[:, 1]) <= reach
-                told += [f"{i}-{j}:{a:.0f}-{b:.0f}" for a, b in _spans(times[::10], near)]
-        return " ".join(told)
+    def _graphs(self, poses: Any, times: Any) -> dict[str, str]:
+        """Pairs over time as runs ``i-j:from-to`` [s], space between.
+
+        ``graph``: who is within radio range of whom, by true poses; ``heard``: who of whom one has
+        heard the other in the last second, which is what the radio really carried.
+        """
+        reach, times = self._condition["d_com"], times[::10]
+        heard, told = np.stack(self._heard), {"graph": [], "heard": []}
+        for i, j in zip(*np.triu_indices(poses.shape[1], 1), strict=True):
+            way = poses[::10, i, :2] - poses[::10, j, :2]
+            near = np.hypot(way[:, 0], way[:, 1]) <= reach
+            for name, flags in (("graph", near), ("heard", heard[:, i, j] | heard[:, j, i])):
+                told[name] += [f"{i}-{j}:{a:.0f}-{b:.0f}" for a, b in _spans(times, flags)]
+        return {name: " ".join(runs) for name, runs in told.items()}
 
 
 def _rms(values: Any) -> float:

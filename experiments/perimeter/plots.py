@@ -55,9 +55,9 @@ def _states(rows: Table, folder: Path, task: str) -> Path:
 
 
 def _graph(rows: Table, folder: Path, task: str) -> Path:
-    """A row for every pair of trucks, drawn while their true poses are within radio range."""
+    """A row for every pair of trucks, drawn while one of the two hears the other."""
     path = folder / f"graph-{task}.svg"
-    told, end = str(rows.values("graph")[0]), float(rows.values("time_s")[0])
+    told, end = str(rows.values("heard")[0]), float(rows.values("time_s")[0])
     spans = []
     for entry in told.split():
         pair, times = entry.split(":")
@@ -68,7 +68,9 @@ def _graph(rows: Table, folder: Path, task: str) -> Path:
     flags = np.zeros((len(times), len(pairs)), dtype=bool)
     for pair, start, stop in spans:
         flags[times.index(start) : times.index(stop), pairs.index(pair)] = True
-    title = f"Radio graph: pairs within range by true poses, first trial ({task})"
+    title = (
+        f"Radio graph: pairs of whom one heard the other in the last second, first trial ({task})"
+    )
     with figure(path, title, "time [s]", "pair of trucks") as axes:
         flag_rows(axes, times, flags, pairs)
         axes.set_xlim(0, end)

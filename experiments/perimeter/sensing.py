@@ -7,7 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controllers.perimeter.echoes import kind_in_cones, nearest_unexplained, wall_ranges
-from controllers.perimeter.percepts import SPOKEN, Percepts, foot_of_edge, nearest_of_kind
+from controllers.perimeter.percepts import (
+    SPOKEN,
+    Percepts,
+    foot_of_edge,
+    nearest_of_kind,
+    room_to_turn,
+)
 from controllers.perimeter.vision import inside
 from experiments.perimeter.reckoning import Reckoning
 from experiments.perimeter.worlds import HALF, Scene
@@ -37,9 +43,10 @@ IDENTIFIERS = {
     ODOMETER: 0x138, COMPASS: 0x13C,
 }  # fmt: skip
 SIZES = {
-    INSIDE: 1, EDGE: 8, RED: 16, BODY: 8, SONAR: 16, POSE: 12, ODOMETER: 8, COMPASS: 2,
+    INSIDE: 1, EDGE: 12, RED: 16, BODY: 8, SONAR: 16, POSE: 12, ODOMETER: 8, COMPASS: 2,
 }  # fmt: skip
 """Bytes."""
+TURN, NOSE = 0.67, np.array([0.4, 0.2])  # m: sharpest turn at 0.3 rad/s, and what it must not touch
 STALE = 0.5  # s: what is older counts as missing
 SONAR_RATE = 5.0  # Hz: 5 m and back take 29 ms, and of eight two fire at once
 BEAM = np.radians(15.0)  # full angle of a cone
@@ -108,7 +115,10 @@ class Senses:
         at = self._at = simulation.rays.mounts(site)[0]
 
         def edge() -> Array:
-            return foot_of_edge(arc.read(), arc.angles, PILLAR, at, SENSE)
+            looks = arc.read()
+            foot = foot_of_edge(looks, arc.angles, PILLAR, at, SENSE)
+            room = room_to_turn(looks, arc.angles, PILLAR, at, TURN, NOSE)
+            return np.column_stack([foot, room])
 
         if condition["sensing"] == "camera":
             eye = trucks.eye
@@ -181,8 +191,8 @@ class Senses:
         pose = read[POSE] if self._reckoning is None else self._reckon(read)
         body = read[BODY] if BODY in read else self._echo(read, pose)
         return Percepts(
-            time=time, pose=pose, edge=read[EDGE], inside=read[INSIDE], body=body, heard=heard,
-            sent=sent,
+            time=time, pose=pose, edge=read[EDGE][:, :2], inside=read[INSIDE],
+            room=read[EDGE][:, 2], body=body, heard=heard, sent=sent,
         )  # fmt: skip
 
     def _reckon(self, read: Mapping[str, Array]) -> Array:

@@ -95,6 +95,17 @@ def test_plots_are_drawn_of_a_trial(tmp_path):
     assert all(p.read_text().count("path") > 5 for p in written)
 
 
+def test_the_radio_graph_is_what_was_heard_and_not_who_is_in_range():
+    found = run(task="stay", start="bunch", duration=5.0)
+    assert found["graph"]
+    assert len(found["heard"].split()) == len(found["graph"].split()) == 10
+    # nothing is heard before the first broadcast
+    assert all(":1-" in entry for entry in found["heard"].split())
+    silent = run(task="join", failure="radio", d_com=150.0, duration=5.0)
+    assert silent["graph"]
+    assert not silent["heard"]
+
+
 def test_odometry_drifts_and_nobody_steers_by_it():
     found = run(task="join", duration=40.0)
     assert 0.0 < found["drift_m"] < 1.0

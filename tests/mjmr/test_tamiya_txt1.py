@@ -257,6 +257,15 @@ def test_it_never_turns_faster_than_asked_for(case, dt_max):
     assert np.abs(twists[..., 0]).max() < 2.005
 
 
+@pytest.mark.parametrize("turn", [0.0, 0.3])
+def test_it_drives_no_faster_than_published_whatever_it_is_told(turn):
+    """At most 2 m/s over any 0.5 s, 2.5 being commanded (Fierro et al. 2005)."""
+    poses, twists, _ = run(hold(2.5, turn, 6.0), TamiyaTXT1(), dt_max=0.01)
+    ways = np.hypot(*(poses[5:, :2] - poses[:-5, :2]).T)
+    assert 1.99 < ways.max() / 0.5 <= 2.0
+    assert twists[-1, 0] > 1.99
+
+
 def test_steering_for_the_present_speed_alone_turns_too_fast():
     """What the platform's slew prevents: v and w ramped each by itself."""
 
@@ -446,7 +455,7 @@ def test_commands_are_cut_to_what_speed_control_and_steering_can_do():
     world, robots = trucks([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [4.0, 0.0, 0.0]])
     KinematicSimulation(world, control_period=PERIOD)
     robots.drive([[3.0, 0.2], [1.0, -0.5], [0.0, 0.0]])
-    np.testing.assert_allclose(robots.command, [[2.0, 0.2], [1.0, -0.3], [0.0, 0.0]])
+    np.testing.assert_allclose(robots.command, [[1.998, 0.2], [1.0, -0.3], [0.0, 0.0]])
     # it cannot turn on the spot, nor sharper than its lock, nor go back as a unicycle
     robots.drive([[0.0, 0.3], [0.1, 0.3], [-1.0, 0.1]])
     turn = 0.1 * math.tan(LOCK) / 0.31

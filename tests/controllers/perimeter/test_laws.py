@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 
 from controllers.perimeter import PerimeterConfig
-from controllers.perimeter.approach import acquire, approach, edge_errors, onto
+from controllers.perimeter.approach import Edge, acquire, approach, way_off
 from controllers.perimeter.avoidance import Avoidance, Neighbours
 from controllers.perimeter.config import even_factor, tracked_radius
+from controllers.perimeter.doubt import Doubt
 from controllers.perimeter.estimate import TrackedCircles, circle
-from controllers.perimeter.percepts import foot_of_edge, nearest_of_kind
+from controllers.perimeter.percepts import foot_of_edge, nearest_of_kind, room_to_turn
 from controllers.perimeter.spiral import Boundary, Spiral
 from controllers.perimeter.states import ACQUIRE, MOVING, TRACKING
 from controllers.perimeter.tracking import Zigzag, bang_bang, spacing
@@ -92,7 +93,7 @@ def test_who_turns_away_from_a_corner_does_so_until_clear_of_it(at):
 
 def test_the_potential_field_turns_the_short_way():
     pose = np.array([[0, 0, 3.0], [0, 0, -3.0]])
-    command = approach(pose, np.array([[-5.0, -0.5], [-5.0, 0.5]]), CONFIG)
+    command = approach(way_off(pose, np.array([[-5.0, -0.5], [-5.0, 0.5]])), CONFIG)
     assert command[0, 1] > 0 > command[1, 1]
     k = 0.3 / (2 * np.pi)
     assert command[0, 1] == pytest.approx(k * (np.arctan2(-0.5, -5.0) + 2 * np.pi - 3.0))
@@ -110,9 +111,10 @@ def test_acquire_ends_on_the_edge_anticlockwise_and_never_gets_inside(turn):
     pose, least = np.array([[13.0, 0.0, np.pi + turn]]), np.inf
     for _ in range(400):
         edge = edge_of(pose, 10.0)
-        pose = drive(pose, acquire(edge, CONFIG))
+        pose = drive(pose, acquire(Edge(edge, CONFIG), CONFIG))
         least = min(least, np.hypot(*pose[0, :2]) - 10.0)
-    error, tangent = edge_errors(edge_of(pose, 10.0), CONFIG)
+    found = Edge(edge_of(pose, 10.0), CONFIG)
+    error, tangent = found.error, found.tangent
     # on a circle a proportional law lags
     assert abs(error[0]) < 0.1
     assert abs(tangent[0]) < 0.15
@@ -124,10 +126,10 @@ def test_acquire_ends_on_the_edge_anticlockwise_and_never_gets_inside(turn):
 def test_who_acquires_touches_nothing_from_whatever_heading(off, heading):
     pose, least = np.array([[10.0 + off, 0.0, heading]]), np.inf
     for _ in range(600):
-        pose = drive(pose, acquire(edge_of(pose, 10.0), CONFIG))
+        pose = drive(pose, acquire(Edge(edge_of(pose, 10.0), CONFIG), CONFIG))
         least = min(least, np.hypot(*pose[0, :2]) - 10.0)
     assert least > 0.43  # what a truck reaches from its rear axle
-    assert abs(edge_errors(edge_of(pose, 10.0), CONFIG)[0][0]) < 0.1
+    assert abs(Edge(edge_of(pose, 10.0), CONFIG).error[0]) < 0.1
 
 
 @pytest.mark.parametrize(("radius", "holds"), [(10.0, True), (20.0, True), (3.0, False)])
@@ -143,6 +145,55 @@ def test_bang_bang_follows_discs_above_four_metres(radius, holds):
         turn = bang_bang((depth > 0).astype(float), forward, CONFIG)
         pose = drive(pose, np.column_stack([forward, turn]))
     assert (worst < 0.1) == holds
+
+
+def stray(wrong, heeds, n=60, seconds=120.0):
+    """Distances from a disc of 10 m (t, n) of robots each alone there by readings 0.1 s old."""
+    rng = np.random.default_rng(1000)
+    doubt, everybody = Doubt(n, CONFIG), np.ones(n, dtype=bool)
+    pose = np.tile([tracked_radius(10.0), 0.0, np.pi / 2], (n, 1))
+    forward, reading, off = np.zeros(n), np.zeros(n), []
+    for _ in range(round(seconds / 0.1)):
+        c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
+        spot = pose[:, :2] + np.column_stack([0.5 * c - 0.6 * s, 0.5 * s + 0.6 * c])
+        depth = 10.0 - np.hypot(*spot.T)
+        inside, reading = reading, ((depth > 0) ^ (rng.random(n) < wrong)) * 1.0
+        believed = doubt.believed(inside, forward, everybody)
+        if not heeds:
+            believed = inside
+        forward = doubt.limit(np.full(n, 0.4)) if heeds else np.full(n, 0.4)
+        pose = drive(pose, np.column_stack([forward, bang_bang(believed, forward, CONFIG)]))
+        off.append(depth)
+    return np.array(off[300:]), doubt
+
+
+def test_a_fifth_of_readings_wrong_is_noticed_and_strays_no_more():
+    literal, _ = stray(0.2, heeds=False)
+    mended, doubt = stray(0.2, heeds=True)
+    assert np.sqrt((literal**2).mean(axis=0)).max() > 0.1
+    assert np.sqrt((mended**2).mean(axis=0)).max() < 0.05
+    assert doubt.doubts.mean() > 0.9
+
+
+def test_readings_that_are_right_change_nothing():
+    literal, _ = stray(0.0, heeds=False)
+    mended, doubt = stray(0.0, heeds=True)
+    assert literal.tobytes() == mended.tobytes()
+    assert not doubt.doubts.any()
+
+
+def test_who_stands_notices_wrong_readings_takes_the_majority_and_forgets_when_it_leaves():
+    doubt, yes, no = Doubt(1, CONFIG), np.array([True]), np.array([False])
+    still, told = np.zeros(1), []
+    for k in range(60):
+        seen = np.array([float(k % 5 != 2)])  # every fifth says outside
+        told.append(doubt.believed(seen, still, yes)[0])
+    assert not all(told[:15])
+    assert all(told[30:])
+    assert np.isnan(doubt.believed(np.full(1, np.nan), still, yes)[0])
+    assert doubt.limit(np.array([0.4])).tolist() == [0.2]
+    doubt.believed(np.zeros(1), still, no)
+    assert doubt.limit(np.array([0.4])).tolist() == [0.4]
 
 
 def ring(angles, radius, config, desired, seconds):
@@ -199,6 +250,31 @@ def test_a_stopped_robot_makes_one_zigzag_when_the_edge_is_deep_inside():
     assert speed(0.01, 0.0) == 0.4
     assert speed(-0.01, 1.0) == 0.0
     assert speed(-0.01, 0.0) == 0.0
+
+
+def test_a_stopped_robot_makes_one_zigzag_when_the_edge_has_gone_from_it():
+    zigzag = Zigzag(1, CONFIG)
+    still, tracks = np.zeros(1), np.array([True])
+
+    def speed(error, is_inside):
+        return zigzag.speeds(still, np.array([error]), np.array([is_inside]), tracks, ~tracks)[0]
+
+    assert speed(0.1, 0.0) == 0.0
+    assert speed(0.16, 1.0) == 0.0  # a wrong reading
+    assert speed(0.16, 0.0) == 0.4
+    assert speed(0.0, 1.0) == 0.4  # in, out, in
+    assert speed(0.01, 0.0) == 0.4
+    assert speed(-0.01, 1.0) == 0.0
+
+
+def test_nobody_stops_off_the_edge_because_readings_were_wrong():
+    zigzag = Zigzag(1, CONFIG)
+    yes, still = np.array([True]), np.zeros(1)
+    told = []
+    for k, error in enumerate([0.1] * 8 + [0.04] * 2):
+        seen = np.array([float(k % 2)])
+        told.append(zigzag.speeds(still, np.array([error]), seen, yes, np.array([k == 0]))[0])
+    assert told == [0.4] * 9 + [0.0]
 
 
 def neighbours(pose, state, speed=None):
@@ -285,7 +361,8 @@ def test_who_acquires_gets_past_one_who_stands_on_the_perimeter_for_ever(angle, 
     for _ in range(900):
         edge = edge_of(pose, 10.0)
         known, ways = neighbours(pose, state, speed), np.arctan2(edge[:, 1], edge[:, 0])
-        wanted, heading = acquire(edge, CONFIG), onto(edge, CONFIG)
+        seen = Edge(edge, CONFIG)
+        wanted, heading = acquire(seen, CONFIG), seen.onto
         command = avoidance.apply(wanted, heading, ways, state, known, nobody)
         command[1] = 0.0
         speed = command[:, 0]
@@ -295,7 +372,7 @@ def test_who_acquires_gets_past_one_who_stands_on_the_perimeter_for_ever(angle, 
     assert least > 2.0
     assert deepest < -0.43
     # nothing keeps it from the edge any more
-    assert edge_errors(edge_of(pose, 10.0), CONFIG)[0][0] == pytest.approx(0.0, abs=0.15)
+    assert Edge(edge_of(pose, 10.0), CONFIG).error[0] == pytest.approx(0.0, abs=0.15)
 
 
 def test_circles_are_found_from_tracks():
@@ -328,6 +405,26 @@ def test_the_edge_is_found_from_rays_with_noise():
     spread = [np.std(np.arctan2(*p.T[::-1])) for p in (foot, point)]
     assert spread[0] < 0.5 * spread[1]
     assert np.isnan(foot_of_edge(looks, angles, 4, mount, 0.5)).all()
+
+
+@pytest.mark.parametrize(("ahead", "room"), [(1.5, 0.31), (1.1, 0.14), (0.5, -0.43)])
+def test_room_to_turn_is_what_a_wall_ahead_leaves_of_the_sharpest_turn(ahead, room):
+    """On a straight edge 0.6 m to the left, with another across it ahead."""
+    angles = np.radians(np.arange(-180.0, 180.0, 2.0))
+    with np.errstate(divide="ignore"):
+        left = np.where(np.sin(angles) > 1e-9, 0.6 / np.sin(angles), np.inf)
+        across = np.where(np.cos(angles) > 1e-9, ahead / np.cos(angles), np.inf)
+    kind, mount, nose = 4, np.zeros(3), np.array([0.4, 0.2])
+    alone = np.stack([left, np.where(np.isfinite(left), kind, 0)], axis=-1)
+    assert room_to_turn(alone[None], angles, kind, mount, 0.67, nose)[0] == pytest.approx(
+        0.6 + 0.67 - np.hypot(0.4, 0.87), abs=0.02
+    )
+    ranges = np.minimum(left, across)
+    looks = np.stack([ranges, np.where(np.isfinite(ranges), kind, 0)], axis=-1)
+    found = room_to_turn(looks[None], angles, kind, mount, 0.67, nose)[0]
+    assert found == pytest.approx(room, abs=0.02)
+    others = np.stack([ranges, np.full(len(angles), 1)], axis=-1)
+    assert room_to_turn(others[None], angles, kind, mount, 0.67, nose)[0] == np.inf
 
 
 def test_red_is_told_from_grey_and_other_colours():

@@ -30,6 +30,7 @@ def percepts(time, pose=FAR, heard=None, sent=None, **known):
     nothing = {
         "edge": np.full((n, 2), np.nan),
         "inside": np.zeros(n),
+        "room": np.full(n, np.inf),
         "body": np.full((n, 2), np.nan),
     }
     heard = np.full((n, n, len(SPOKEN)), np.nan) if heard is None else heard
@@ -135,6 +136,17 @@ def test_without_its_camera_a_robot_that_tracks_stands_and_goes_on_after():
     blind = np.array([np.nan, 0.0, 0.0])
     assert group.step(percepts(0.2, edge=edge(0.62), inside=blind))[0].tolist() == [0.0, 0.0]
     assert group.step(percepts(0.3, edge=edge(0.62)))[0, 0] == 0.4
+
+
+def test_who_has_no_room_to_turn_before_the_next_of_a_bay_turns_at_once():
+    group, near = team(), np.full(N, 0.1)
+    group.step(percepts(0.0, edge=edge(0.62)))
+    group.step(percepts(0.1, edge=edge(0.62)))
+    assert group.state[0] == TRACKING
+    command = group.step(percepts(0.2, edge=edge(0.62), room=near))
+    assert command[0].tolist() == [0.2, -0.3]
+    assert command[1, 0] > 0.1  # who searches heeds it not
+    assert group.step(percepts(0.3, edge=edge(0.62), room=near + 0.1))[0, 1] == 0.1
 
 
 def test_who_does_not_know_where_it_is_stands():
