@@ -20,14 +20,14 @@ MIDDLE = ("eight-middle", "eight-smooth-middle")  # where no wall is in the way
 RANGES = (0.0, 10.0, 25.0, 150.0)  # m, of the radio
 
 
-def grids(join: int, few: int, sweep: int, senses: int = 5) -> tuple[Grid, ...]:
+def grids(join: int, few: int, ranges: int, sweep: int) -> tuple[Grid, ...]:
     """Conditions of a size that decides claims.
 
     Args:
         join: Seeds of the trials in which a team finds a spill.
         few: Seeds of everything else.
-        sweep: Seeds of the sweeps on unicycle bodies.
-        senses: Seeds of the trials in which trucks with other senses find a spill.
+        ranges: Seeds of the sweep of radio ranges, on unicycle bodies.
+        sweep: Seeds of the other sweeps on them, and of followers with cameras.
     """
     return (
         Grid(**JOIN, seeds=join),
@@ -56,14 +56,14 @@ def grids(join: int, few: int, sweep: int, senses: int = 5) -> tuple[Grid, ...]:
         Grid(task="formation", path=(*PATHS, "eight-smooth"), seeds=few),
         Grid(task="formation", path=PATHS, heard="plain", seeds=few),
         Grid(task="envelope", seeds=few),
-        Grid(**JOIN, mode="unicycle", d_com=RANGES, seeds=sweep),
-        Grid(**STAY, mode="unicycle", factor=SWEEP, seeds=few),
-        Grid(**{**STAY, "duration": LONG}, mode="unicycle", robots=(2, *COUNTS), seeds=few),
+        Grid(**JOIN, mode="unicycle", d_com=RANGES, seeds=ranges),
+        Grid(**STAY, mode="unicycle", factor=SWEEP, seeds=sweep),
+        Grid(**{**STAY, "duration": LONG}, mode="unicycle", robots=(2, *COUNTS), seeds=sweep),
         Grid(task="formation", path=MIDDLE, seeds=few),
-        Grid(task="formation", path=SEEN, heard="nothing", seeds=few),
+        Grid(task="formation", path=SEEN, heard="nothing", seeds=sweep),
         Grid(task="formation", path=MIDDLE[0], heard="plain", seeds=few),
-        Grid(**JOIN, obstacles="sonars", localization=("localizer", "odometry"), seeds=senses),
-        Grid(**JOIN, localization=("odometry", "odometry-compass"), seeds=senses),
+        Grid(**JOIN, obstacles="sonars", localization=("localizer", "odometry"), seeds=few),
+        Grid(**JOIN, localization=("odometry", "odometry-compass"), seeds=few),
         Grid(**STAY, obstacles="sonars", localization=("localizer", "odometry"), seeds=few),
         Grid(**STAY, localization="odometry", seeds=few),
         Grid(
@@ -85,10 +85,5 @@ QUICK = Size(
     expected_minutes=0.3,
     note="half a minute of tracking, a circle of three, one truck's limits; decides few claims",
 )
-STANDARD = Size("standard", grids=grids(20, 3, 8), default_seeds=3, expected_minutes=17.0)
-FULL = Size(
-    "full",
-    grids=grids(60, 10, 20, 10),
-    default_seeds=10,
-    expected_minutes=90.0,
-)
+STANDARD = Size("standard", grids=grids(20, 5, 8, 3), default_seeds=5, expected_minutes=40.0)
+FULL = Size("full", grids=grids(60, 10, 20, 10), default_seeds=10, expected_minutes=100.0)
