@@ -55,13 +55,15 @@ class LeaderTrack:
         )  # fmt: skip
         self._unseen = np.full(n, np.inf)
 
-    def step(self, marks: Array, own: Array) -> tuple[Array, Array]:
+    def step(self, marks: Array, then: Array, own: Array) -> tuple[Array, Array]:
         """The leader of every follower after one more period.
 
         Args:
             marks: Distance [m] and bearing [rad] of the rear and the front mark (n, 2, 2) in the
-                follower's frame, NaN: not seen; a leader is placed by both.
-            own: The followers' poses by their odometry (n, 3) [m, m, rad].
+                follower's frame a period ago, when the picture was taken, NaN: not seen; a leader
+                is placed by both.
+            then: The followers' poses by their odometry at that instant (n, 3) [m, m, rad].
+            own: The same now.
 
         Returns:
             seen (n, 3): where the leader is in the follower's frame [m, m] and its heading less the
@@ -72,11 +74,13 @@ class LeaderTrack:
         twist = np.nan_to_num(estimate.twist)
         twist[:, 1] = 0.0  # trucks do not go sideways
         estimate.predict(twist, self._period)
-        report = self._report(marks, own)
+        report = self._report(marks, then)
         estimate.update(report)
         looks = np.isfinite(report[:, 0])
         self._unseen = np.where(looks, 0.0, self._unseen + self._period)
-        pose, twist = estimate.pose, estimate.twist
+        twist = estimate.twist
+        twist[:, 1] = 0.0
+        pose, _ = estimate.ahead(np.nan_to_num(twist)[None], self._period)
         way = rotate(pose[:, :2] - own[:, :2], -own[:, 2])
         seen = np.column_stack([way, wrap_angle(pose[:, 2] - own[:, 2])])
         speeds = twist[:, [0, 2]]

@@ -86,7 +86,8 @@ class Avoidance:
     def _disbelieve(self, near: Neighbours, body: Array) -> None:
         """Whoever is seen is where it is seen, and who is told of ahead but not seen is not (ours).
 
-        Poses that drift put others where they are not, for good if both stand.
+        Poses that drift put others where they are not, for good if both stand. Only the nearest is
+        seen: who is told of beyond it may be there. Changes ``near``.
         """
         c, rows = self._config, np.arange(len(body))
         if np.isinf(c.doubt):
@@ -100,7 +101,8 @@ class Avoidance:
         with np.errstate(invalid="ignore"):
             seen = (apart < c.guard_radius) & (np.abs(bearing) < c.guard_angle)
             told = (near.apart < c.guard_radius) & (np.abs(near.bearing) < c.guard_angle)
-        unseen = told & ~seen[:, None]
+            hidden = apart[:, None] < near.apart
+        unseen = told & ~seen[:, None] & ~hidden
         self._unseen = np.where(unseen, self._unseen + c.period, 0.0)
         near.apart = np.where(self._unseen > c.doubt, np.nan, near.apart)
 

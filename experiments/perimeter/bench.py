@@ -23,6 +23,14 @@ _CASES = {
         {**_BUNCH, "growth": 0.0125, "sensing": "camera", "duration": 10.0},
         1.5,
     ),
+    "searching by sonars and odometers, rays": (
+        {"task": "stay", "duration": 60.0, "obstacles": "sonars", "localization": "odometry"},
+        15.0,
+    ),
+    "two followers with cameras at 10 Hz": (
+        {"task": "formation", "path": "circle", "heard": "nothing", "duration": 31.0},
+        0.0,
+    ),
     "unicycle bodies, rays": ({**_BUNCH, "mode": "unicycle", "duration": 60.0}, 0.0),
 }
 _LOOKS = {"whatever its camera sees": True, "everything there is": False}
@@ -47,8 +55,8 @@ def bench() -> str:
     rounds = interleave({name: job(values) for name, (values, _) in _CASES.items()}, rounds=5)
     lines = [
         conditions(),
-        "simulated s per CPU s, five trucks, compiling the world included, median "
-        "[lowest, highest]:",
+        "simulated s per CPU s, five trucks (followers: three), compiling the world included, "
+        "median [lowest, highest]:",
     ]
     for name, figure in rounds.items():
         least = _CASES[name][1]

@@ -40,10 +40,11 @@ def check(condition: Mapping[str, Any]) -> None:
                 f"errors of task=formation count from {SETTLE:g} s on: duration must be more than "
                 f"{SETTLE:g} s; got {condition['duration']:g} s"
             )
-        if condition["heard"] == "nothing" and condition["d_com"] != _usual("d_com"):
+        usual = _defaults()["d_com"]
+        if condition["heard"] == "nothing" and condition["d_com"] != usual:
             raise InvalidInputError(
                 "followers that hear nothing have no radio: with heard=nothing leave d_com at "
-                f"{format_value(_usual('d_com'))}; got {format_value(condition['d_com'])}"
+                f"{format_value(usual)}; got {format_value(condition['d_com'])}"
             )
         return
     largest_radius(condition)
@@ -74,17 +75,15 @@ def limit_of(condition: Mapping[str, Any]) -> float:
     return min(LEAST, radius) if growth < 0 else radius
 
 
-def _usual(name: str) -> Any:
+def _defaults() -> dict[str, Any]:
     from experiments.perimeter import study
 
-    return {p.name: p.default for p in study.parameters}[name]
+    return {p.name: p.default for p in study.parameters}
 
 
 def _ignored(condition: Mapping[str, Any]) -> None:
-    from experiments.perimeter import study
-
     task = condition["task"]
-    usual = {p.name: p.default for p in study.parameters}
+    usual = _defaults()
     reads = _READS.get(task, set(usual) - set(_FORMATION_ONLY))
     for name, value in condition.items():
         if name not in reads and value != usual[name]:

@@ -6,6 +6,7 @@ ours, those of a reference run where there is one, and were fixed before the run
 
 import numpy as np
 
+from experiments.perimeter.claims_all import everywhere
 from experiments.perimeter.claims_beyond import beyond
 from experiments.perimeter.claims_later import later
 from experiments.perimeter.claims_room import in_the_middle
@@ -42,6 +43,7 @@ def claims() -> list[Claim]:
         *swept(),
         *in_the_middle(),
         *seen(),
+        *everywhere(),
         *senses(),
     ]
 

@@ -7,7 +7,8 @@ from experiments.perimeter.sizes import AFTERWARDS, GROWTH, PATHS
 from mjmr.claims import Bound, Claim
 
 LAW = "(not in the paper) leader and two followers, separation-bearing law"
-_BUNCH = {"task": "stay", "start": "bunch", "mode": "physical", "failure": "none"}
+_SENSES = {"obstacles": "fan", "localization": "localizer"}
+_BUNCH = {"task": "stay", "start": "bunch", "mode": "physical", "failure": "none", **_SENSES}
 _DISC = {**_BUNCH, "radius": 10.0, "spacing": "repaired", "factor": 0.0, "sensing": "rays",
          "wrong": 0.0}  # fmt: skip
 
@@ -105,7 +106,13 @@ def _estimated() -> list[Claim]:
             "with one of 25 m, paired by seed",
             bound=Bound(">", 0.0),
             unit="s",
-            needs={"task": "join", "mode": "unicycle", "growth": 0.0, "failure": "none"},
+            needs={
+                "task": "join",
+                "mode": "unicycle",
+                "growth": 0.0,
+                "failure": "none",
+                **_SENSES,
+            },
             evaluate=gain_of_radio,
         ),
     ]
@@ -129,7 +136,7 @@ def _senses() -> list[Claim]:
             "joining; worst trial",
             bound=Bound("<", 0.05),
             unit="m",
-            needs={**_BUNCH, "radius": 10.0, "growth": 0.0, "wrong": 0.2},
+            needs={**_BUNCH, "radius": 10.0, "growth": 0.0, "wrong": 0.2, "duration": 200.0},
             evaluate=extreme("rms_m"),
         ),
     ]
@@ -143,7 +150,13 @@ def _edges() -> list[Claim]:
             how="disc of 15 m that shrinks by 0.0125 m/s: rms from 30 s after joining; worst trial",
             bound=Bound("<", 0.15),
             unit="m",
-            needs={**_BUNCH, "radius": 15.0, "growth": -GROWTH, "wrong": 0.0},
+            needs={
+                **_BUNCH,
+                "radius": 15.0,
+                "growth": -GROWTH,
+                "wrong": 0.0,
+                "duration": 300.0,
+            },
             evaluate=extreme("rms_m"),
         ),
         Claim(
@@ -153,7 +166,13 @@ def _edges() -> list[Claim]:
             "turns: rms from 30 s after joining; worst trial",
             bound=Bound("<", 0.25),
             unit="m",
-            needs={"task": "join", "edge": "lobes", "mode": "physical", "failure": "none"},
+            needs={
+                "task": "join",
+                "edge": "lobes",
+                "mode": "physical",
+                "failure": "none",
+                **_SENSES,
+            },
             evaluate=extreme("rms_m"),
         ),
     ]

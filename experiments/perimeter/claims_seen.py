@@ -6,13 +6,16 @@ from experiments.perimeter.sizes import SEEN
 from mjmr.claims import Bound, Claim
 
 _HOW = (
-    "leader at 0.8 m/s, seen by two poles in a camera of 100 degrees at 10 Hz, its speeds "
-    "estimated, no radio"
+    "leader at 0.8 m/s, seen by two poles in a camera of 100 degrees at 10 Hz, 0.1 s late, its "
+    "speeds estimated, no radio"
 )
 
 
 def seen() -> list[Claim]:
-    """Every one; bounds are those of followers that hear their leader."""
+    """Every one; bounds are those of followers that hear their leader.
+
+    They were written after seed 1000 had been seen, and before any other of these.
+    """
     return [
         *(
             Claim(

@@ -1,4 +1,4 @@
-"""Claims of teams with the paper's own senses: sonars, odometers, and both.
+"""Claims of teams with the paper's own senses but for the camera: sonars, odometers, and both.
 
 The paper's trucks have odometers for their pose, a camera for the perimeter and sonars for what
 they might hit. The demands are those of the claims on the fan and the localizer, bounds ours. They
@@ -27,7 +27,7 @@ SENSES: dict[str, tuple[Mapping[str, Any], str]] = {
     ),
     "suite": (
         {"obstacles": "sonars", "localization": "odometry"},
-        "odometers, camera and sonars, as in the paper",
+        "odometers and sonars, as in the paper, with rays in place of its camera",
     ),
     "compass": (
         {"localization": "odometry-compass"},
@@ -47,7 +47,7 @@ def senses() -> list[Claim]:
         found += _joining(name, given, words)
         if name != "compass":
             found += _spreading(name, given, words)
-    for name in ("sonars", "suite"):
+    for name in ("sonars", "suite", "odometry"):
         given, words = SENSES[name]
         found.append(
             Claim(
@@ -67,8 +67,8 @@ def senses() -> list[Claim]:
             Claim(
                 id=f"drift-{name}",
                 text="odometers (pose)",
-                how=f"{words}, finding a static disc: how far a truck is off where it takes itself "
-                "to be in the end; worst truck of all trials",
+                how=f"{words}, finding a static disc: how far a truck is off in the end, by dead "
+                "reckoning from its wheels, without the bus between; worst truck of all trials",
                 bound=Bound("<", bound),
                 unit="m",
                 needs={**JOIN, **given},

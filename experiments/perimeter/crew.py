@@ -18,7 +18,6 @@ class Crew:
     A team has ``step`` and ``state``. What else the published one tells of itself is taken from it
     if it is there; otherwise ``joined`` and ``told`` follow from the states, ``sensed`` is when one
     first had the perimeter in range, nobody counts hops, and d_des is not known.
-
     """
 
     def __init__(self, team: Any, n: int):

@@ -1,4 +1,7 @@
-"""Followers that see their leader and hear nothing: two coloured poles, a camera, odometry."""
+"""Followers that see their leader and hear nothing: two coloured poles, a camera, odometry.
+
+A picture is delivered a period after it was taken, as everything is on the trucks' bus.
+"""
 
 import math
 from collections.abc import Mapping
@@ -66,8 +69,8 @@ class LeaderSeen:
         ahead = (EYE[0] + 1.0, EYE[1], EYE[2])
         self._camera: Camera = trucks.mount(
             Camera(
-                width=width, height=height, fovy=fovy, rate=1.0 / PERIOD, noise=_NOISE,
-                position=EYE, look_at=ahead,
+                width=width, height=height, fovy=fovy, rate=1.0 / PERIOD, latency=PERIOD,
+                noise=_NOISE, position=EYE, look_at=ahead,
             ),
             "front",
         )  # fmt: skip
@@ -81,6 +84,7 @@ class LeaderSeen:
             counts_per_turn=trucks.encoders.counts_per_turn,
         )  # fmt: skip
         self._looked_at = -1.0
+        self._then = self._odometry.poses
 
     def start(self, simulation: Any) -> None:
         """Find out how the cameras project."""
@@ -93,10 +97,11 @@ class LeaderSeen:
         Neither argument is used: nobody speaks.
         """
         del now, leads
-        own = self._odometry.step(self._trucks.encoders.read()[1:])
+        then, own = self._then, self._odometry.step(self._trucks.encoders.read()[1:])
+        self._then = own
         marks = np.full((len(own), 2, 2), np.nan)
-        if self._camera.sampled_at != self._looked_at:
+        if np.any(self._camera.fresh) and self._camera.sampled_at != self._looked_at:
             self._looked_at = self._camera.sampled_at
             for i, image in enumerate(self._camera.read()[1:]):
                 marks[i] = self._finder.find([image])
-        return self._track.step(marks, own)
+        return self._track.step(marks, then, own)

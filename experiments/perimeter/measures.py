@@ -147,6 +147,7 @@ class Log:
             "all_track": bool(np.isfinite(joined[on]).all()),
             "all_track_end": bool((self._states[-1] == TRACKING)[on].all()),
             "tracking": int(np.isfinite(joined).sum()),
+            "joins": " ".join(f"{t:.1f}" for t in np.sort(joined[np.isfinite(joined)])),
             "last_joined_s": float(np.max(joined[on]))
             if np.isfinite(joined[on]).all()
             else float(self._condition["duration"]),

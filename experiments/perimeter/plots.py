@@ -22,7 +22,7 @@ def plots(table: Table, folder: Path) -> list[Path]:
         rows = joins.where(task=task)
         if rows.finished:
             written += [_states(rows, folder, task), _graph(rows, folder, task)]
-    sweep = table.where(task="stay", mode="unicycle", robots=5, growth=0.0)
+    sweep = table.where(task="stay", mode="unicycle", robots=5, growth=0.0, duration=600.0)
     if sweep.finished and len(sweep.distinct("factor")) > 2:
         written.append(_spacing(sweep, folder))
     counts = table.where(task="stay", mode="unicycle", factor=0.0, growth=0.0, duration=LONG)
@@ -99,20 +99,33 @@ def _counts(rows: Table, folder: Path) -> Path:
         found: dict[int, Any] = {int(n): part for n, part in rows.split("robots")}
         order = sorted(found)
         times = [statistics.mean(found[n].values("stopped_at_s")) for n in order]
-        interval_line(axes, order, times, "mean")
+        interval_line(
+            axes, order, times, "mean; two never do: no chord is longer than the diameter"
+        )
+        axes.axhline(LONG, color="0.6", linewidth=1, label="end of the runs")
+        axes.legend()
     return path
 
 
 def _ranges(rows: Table, folder: Path) -> Path:
     path = folder / "radio-range.svg"
-    title = f"Until all five track, unicycle bodies ({rows.finished} runs, at most 900 s)"
+    title = f"Until some of five track, unicycle bodies ({rows.finished} runs, at most 900 s)"
     with figure(path, title, "range of the radio [m]", "time [s]") as axes:
         found: dict[float, Any] = {float(r): part for r, part in rows.split("d_com")}
         order = sorted(found)
-        times = [statistics.mean(found[r].values("last_joined_s")) for r in order]
-        interval_line(axes, list(range(len(order))), times, "mean")
+        for k in (1, 3, 5):
+            times = [statistics.mean(_until(found[r], k)) for r in order]
+            interval_line(axes, list(range(len(order))), times, f"until {k} track, mean")
+        axes.legend()
         axes.set_xticks(range(len(order)), [f"{r:g}" for r in order])
     return path
+
+
+def _until(rows: Table, k: int) -> np.ndarray:
+    """When the k-th robot joined [s], of every trial; the end where it never did."""
+    joins = [[float(t) for t in str(told).split()] for told in rows.values("joins")]
+    ends = rows.values("time_s")
+    return np.array([t[k - 1] if len(t) >= k else e for t, e in zip(joins, ends, strict=True)])
 
 
 def _runs(told: str) -> list[tuple[int, list[float], list[int]]]:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from controllers.perimeter.config import PerimeterConfig
 from controllers.perimeter.echoes import kind_in_cones, nearest_unexplained, wall_ranges
 from controllers.perimeter.percepts import (
     SPOKEN,
@@ -46,7 +47,8 @@ SIZES = {
     INSIDE: 1, EDGE: 12, RED: 16, BODY: 8, SONAR: 16, POSE: 12, ODOMETER: 8, COMPASS: 2,
 }  # fmt: skip
 """Bytes."""
-TURN, NOSE = 0.67, np.array([0.4, 0.2])  # m: sharpest turn at 0.3 rad/s, and what it must not touch
+# m: radius of a truck's sharpest turn; its front left corner, with room for a tyre that is steered
+TURN, NOSE = PerimeterConfig.least_speed / PerimeterConfig.top_turn, np.array([0.4, 0.2])
 STALE = 0.5  # s: what is older counts as missing
 SONAR_RATE = 5.0  # Hz: 5 m and back take 29 ms, and of eight two fire at once
 BEAM = np.radians(15.0)  # full angle of a cone

@@ -14,7 +14,7 @@ PATHS = ("straight", "circle", "eight")
 TIGHT, ROOMY = (0.6, 0.7, 0.8, 0.9, 0.95), (1.05, 1.1, 1.2, 1.3, 1.4)
 SWEEP = (*TIGHT, 1.0, *ROOMY)  # d_des in even chords
 COUNTS = (3, 4, 5, 6, 7, 8)  # robots
-LONG = 900.0  # s: eight stop after 700
+LONG = 900.0  # s: eight stop after 700 (seeds 1000 and 1001)
 SEEN = ("straight", "circle", "eight-middle", "eight-smooth-middle")  # by camera
 MIDDLE = ("eight-middle", "eight-smooth-middle")  # where no wall is in the way
 RANGES = (0.0, 10.0, 25.0, 150.0)  # m, of the radio
@@ -70,6 +70,7 @@ def grids(join: int, few: int, ranges: int, sweep: int) -> tuple[Grid, ...]:
             task="stay", start="scattered", obstacles="sonars",
             localization=("localizer", "odometry"), seeds=few,
         ),
+        Grid(task="stay", start="scattered", localization="odometry", seeds=few),
     )  # fmt: skip
 
 
@@ -86,4 +87,12 @@ QUICK = Size(
     note="half a minute of tracking, a circle of three, one truck's limits; decides few claims",
 )
 STANDARD = Size("standard", grids=grids(20, 5, 8, 3), default_seeds=5, expected_minutes=40.0)
-FULL = Size("full", grids=grids(60, 10, 20, 10), default_seeds=10, expected_minutes=100.0)
+FULL = Size(
+    "full",
+    grids=(
+        *grids(60, 10, 20, 10),
+        Grid(**STAY, mode="unicycle", robots=(2, 3, 4, 6, 7, 8), seeds=5),
+    ),
+    default_seeds=10,
+    expected_minutes=100.0,
+)

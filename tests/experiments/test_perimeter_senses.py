@@ -7,6 +7,8 @@ import pytest
 
 from controllers.perimeter import PerimeterTeam
 from experiments.perimeter import study
+from experiments.perimeter.claims import claims
+from experiments.perimeter.claims_all import everywhere
 from experiments.perimeter.claims_senses import SENSES, senses
 from experiments.perimeter.reckoning import Reckoning
 from experiments.perimeter.sensing import BEAM, COMPASS, IDENTIFIERS, ODOMETER, SONAR, Senses, mount
@@ -215,8 +217,12 @@ def test_a_team_by_odometry_errs_as_odometry_does():
     assert known["drift_worst_deg"] > found["drift_worst_deg"]
 
 
-def test_every_new_claim_has_bounds_called_ours_and_other_conditions_than_the_old_ones():
+def test_claims_of_these_senses_and_the_others_have_conditions_of_their_own():
     told = senses()
-    assert len({c.id for c in told}) == len(told) == 27
+    assert len({c.id for c in told}) == len(told) == 28
     for claim in told:
         assert (claim.needs["obstacles"], claim.needs["localization"]) != ("fan", "localizer")
+    ids = {c.id for c in (*told, *everywhere())}
+    for claim in claims():
+        if claim.id not in ids and claim.needs["task"] in ("join", "stay"):
+            assert (claim.needs["obstacles"], claim.needs["localization"]) == ("fan", "localizer")

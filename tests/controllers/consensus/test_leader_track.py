@@ -33,7 +33,7 @@ def _run(seconds, hides=lambda now: False, noise=0.0, seed=0):
     track = LeaderTrack(2, behind=BEHIND, ahead=AHEAD, period=PERIOD)
     # each frame begins where that follower stood: the leader is elsewhere in each
     starts = np.array([[-1.7, 1.0, 0.1], [-1.7, -1.0, -0.2]])
-    told = []
+    told, late = [], (np.full((2, 2, 2), np.nan), np.zeros((2, 3)))
     for k in range(round(seconds / PERIOD)):
         now = k * PERIOD
         leader = _arc(np.zeros(3), 0.8, 0.08, now)
@@ -46,7 +46,8 @@ def _run(seconds, hides=lambda now: False, noise=0.0, seed=0):
         marks += noise * rng.standard_normal(marks.shape)
         if hides(now):
             marks[:] = np.nan
-        seen, speeds = track.step(marks, own)
+        seen, speeds = track.step(*late, own)  # of the picture before
+        late = marks, own
         way = np.array([rotate((leader - w)[None, :2], -w[2:])[0] for w in world])
         true = np.column_stack([way, wrap_angle(leader[2] - world[:, 2])])
         told.append((seen, speeds, true))

@@ -482,13 +482,30 @@ def test_who_is_seen_is_where_it_is_seen_if_poses_drift():
     pose = np.array([[0.0, 0.0, 0.0], [0.5, 2.2, 1.0]])
     body, state = np.array([[0.9, 0.0], [np.nan, np.nan]]), np.array([ACQUIRE, TRACKING])
     wanted = np.array([[0.4, 0.0], [0.0, 0.0]])
-    for given in ({"same": 3.0, "doubt": 10.0}, {}):
-        avoidance = Avoidance(2, PerimeterConfig(bounds=BOUNDS, **given))
+    drifts = PerimeterConfig(bounds=BOUNDS, same=3.0, doubt=10.0)
+    for config in (drifts, PerimeterConfig(bounds=BOUNDS)):
+        avoidance = Avoidance(2, config)
         known = neighbours(pose, state)
         told = avoidance.apply(wanted, np.zeros(2), NO_EDGE, state, known, body)
         assert told[0].tolist() == [0.0, 0.0]
-        if given:
+        if config is drifts:
             assert known.apart[0, 1] == pytest.approx(1.3)
             assert known.bearing[0, 1] == 0.0
         else:
             assert known.apart[0, 1] == pytest.approx(np.hypot(0.5, 2.2))
+
+
+def test_who_stands_behind_somebody_nearer_is_not_disbelieved():
+    # rear, middle and front: the middle one sees the nearest alone, behind it
+    config = PerimeterConfig(bounds=(-50, -50, 50, 50), doubt=10.0)
+    pose = np.array([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [5.0, 0.0, 0.0]])
+    told = np.column_stack([pose, np.full(3, TRACKING), np.zeros(3)])
+    body = np.array([[1.5, 0.0], [-1.5, 0.0], [-2.5, 0.0]])
+    avoidance, found = Avoidance(3, config), np.zeros((3, 2))
+    for _ in range(200):
+        near = Neighbours(pose, np.tile(told, (3, 1, 1)), ~np.eye(3, dtype=bool))
+        command = np.tile([0.4, 0.0], (3, 1))
+        found = avoidance.apply(
+            command, np.zeros(3), np.full(3, np.nan), np.full(3, TRACKING), near, body
+        )
+    assert found[1, 0] == 0.0
