@@ -62,8 +62,8 @@ def _bad_radio() -> list[Claim]:
     late, lossy = {**FIVE, "delay": 2.0}, {**FIVE, "loss": 0.9}
     return [
         claim("late-point", "messages 2 s late: mean of the outputs less (4.134, 3.933), the "
-              "linear model's if nothing is known before the first message; if starts are, it is (4.49, "
-              "3.76); largest", Bound("<=", 0.05), late, off_point(4.134, 3.933),
+              "linear model's if nothing is known before the first message; if starts are, it is "
+              "(4.49, 3.76); largest", Bound("<=", 0.05), late, off_point(4.134, 3.933),
               text=quotes.ABSENT + "late messages"),
         claim("late-spread", "the same runs: spread at 80 s, largest", Bound("<=", 0.05), late,
               largest("spread_m"), text=quotes.ABSENT + "late messages"),
