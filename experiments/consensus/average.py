@@ -22,6 +22,7 @@ from controllers.consensus import (
 from experiments.consensus.arena import HAND, add_team, hall
 from experiments.consensus.physical import RATE, Metrics
 from experiments.consensus.refusals import ROUNDS, refuse_unfit
+from experiments.consensus.roles import PUBLISHED
 from mjmr.metrics import ContactMeter
 from mjmr.radio import Radio
 from mjmr.randomness import Streams
@@ -60,7 +61,7 @@ class Patrol:
         return np.array([self._middle + on, moves, -(rate**2) * on], dtype=np.float64)
 
 
-def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
+def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED) -> Metrics:
     """How well robots know the mean of their readings in the end.
 
     Returns:
@@ -86,7 +87,8 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
     simulation = Simulation(world, seed=seed, control_period=1 / RATE, dt_max=0.01)
     reach = condition["reach"]
     radio = Radio(simulation, range=reach, latency=condition["delay"], loss=condition["loss"])
-    control, service = HandTeam(HAND, 1 / RATE), RULES[condition["rule"]](readings)
+    control = HandTeam(HAND, 1 / RATE, law=parts["law"](n))
+    service = RULES[condition["rule"]](readings)
     watch = _Links(simulation, robots, reach)
     meter = ContactMeter(simulation)
     every, told_at = round(RATE / ROUNDS), None

@@ -45,7 +45,7 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PU
     if condition["experiment"] == "moving":
         return moving.trial(condition, seed, parts)
     if condition["experiment"] == "average":
-        return average.trial(condition, seed)
+        return average.trial(condition, seed, parts)
     return physical.trial(condition, seed, parts)
 
 
