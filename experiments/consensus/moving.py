@@ -87,14 +87,21 @@ class Path:
 
 
 class MovingTeam(Team):
-    """Robots in a formation that moves."""
+    """Robots in a formation that moves.
+
+    Attributes:
+        leader: Who knows the path.
+        path: What the formation does.
+        told: Whether velocities and accelerations are told.
+        theory: By the closed loop, of each robot's output from the path's point (n,) [m].
+    """
 
     def __init__(
         self, condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED
     ):
         """See :class:`experiments.consensus.physical.Team`."""
-        super().__init__(condition, seed, parts)
         self.told = condition["feedforward"] == "told"
+        super().__init__(condition, seed, parts)
         self._errors: list[Array] = []
         self.simulation.observe(self._look)
 
@@ -114,6 +121,9 @@ class MovingTeam(Team):
             condition["path"], START[self.leader], condition["speed"], condition["turn_rate"],
             offsets,
         )  # fmt: skip
+        delay = max(condition["delay"], 1.0 / RATE)  # what is told in a tick is heard in the next
+        # a loop that has no end, since somebody does not hear the leader, is told before it runs
+        self.theory = self.path.error_rms(self.schedule.gains[-1], self.leader, delay, self.told)
         times = np.linspace(0.0, condition["duration"], 200)
         way = np.array([self.path.point(float(t))[0] for t in times])
         room = 1.5 + (1.0 + SWING) * np.hypot(*offsets.T).max()
@@ -160,22 +170,20 @@ def _passed_on(heard: Array, gains: Array) -> Array:
     return np.array([found[:, :2], found[:, 2:]])
 
 
-def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED) -> Metrics:
+def measure(team: MovingTeam) -> Metrics:
     """Errors of a formation that moves, over its last turn.
 
     Returns:
         ``rms_i_m`` of each robot's output from the path's point, ``theory_i_m`` by the closed
         loop, ``lag_off``, the largest difference of the two over followers as a share of the
         latter (NaN if that is below 1 cm), ``formation_rms_m`` over the followers, and
-        ``leader_rms_m``; contacts, distance and peaks as in experiment three.
+        ``leader_rms_m``; contacts of robots and with walls, distance and peaks.
     """
-    team = MovingTeam(condition, seed, parts)
-    team.run(condition["duration"])
+    team.run(team.condition["duration"])
     log, path = team.log, team.path
     turn = round(2.0 * math.pi / path.rate * RATE)
     rms = np.sqrt((team.errors[-turn:] ** 2).sum(axis=2).mean(axis=0))
-    delay = max(condition["delay"], 1.0 / RATE)  # what is told in a tick is heard in the next
-    theory = path.error_rms(team.schedule.gains[-1], team.leader, delay, team.told)
+    theory = team.theory
     follows = np.arange(team.n) != team.leader
     off = np.abs(rms - theory)[follows] / np.maximum(theory[follows], 1e-12)
     found: Metrics = {f"rms_{i + 1}_m": float(v) for i, v in enumerate(rms)}
@@ -186,6 +194,7 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PU
         "formation_rms_m": float(np.sqrt((rms[follows] ** 2).mean())),
         "leader_rms_m": float(rms[team.leader]),
         "contacts": log.meter.episodes,
+        "wall_contact_seconds": log.meter.obstacles,
         "least_distance_m": log.least_distance,
         "peak_speed": float(log.peak[0]),
         "peak_turn": float(log.peak[1]),

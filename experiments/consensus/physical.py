@@ -123,6 +123,13 @@ class Team:
             if until_agreed and self.log.spread_now <= _NEAR:
                 return
 
+    def caption(self) -> str:
+        """How far they are now, and who heard whom at the last look."""
+        heard = self.log.heard[-1] if self.log.heard else np.zeros((self.n, self.n), dtype=bool)
+        links = zip(*np.nonzero(heard & ~np.eye(self.n, dtype=bool)), strict=True)
+        hears = ", ".join(f"{i} hears {j}" for i, j in links) or "nobody hears anybody"
+        return f"spread {self.log.spread_now:.2f} m; {hears}"
+
     def formation(self, time: float) -> Array:
         """Offsets (n, 2) [m] at ``time`` [s]."""
         return self.offsets
@@ -320,10 +327,9 @@ class Log:
                 self.heard.append(team.schedule.graphs[team.schedule.at(time)])
 
 
-def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED) -> Metrics:
-    """Metrics of one physical condition."""
-    team = Team(condition, seed, parts)
-    team.run(condition["duration"], until_agreed=team.many)
+def measure(team: Team) -> Metrics:
+    """Metrics of three robots, or of a crowd under one graph."""
+    team.run(team.condition["duration"], until_agreed=team.many)
     log = team.log
     common: Metrics = {
         "spread_m": log.spread_now,
@@ -356,7 +362,7 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PU
         found["reducible"] = team.sight.reducible / team.sight.looks
         found["rooted"] = team.sight.rooted / team.sight.looks
     else:
-        wanted = reference(team.schedule, condition["duration"])
+        wanted = reference(team.schedule, team.condition["duration"])
         found["error_m"] = float(np.hypot(*(middle - wanted)))
         pair = final[:2].mean(axis=0)
         found["pair_error_m"] = float(np.hypot(*(pair - wanted)))

@@ -9,6 +9,8 @@ from mjmr.errors import InvalidInputError
 
 ROUNDS = 10.0
 """Of telling and hearing, in experiment average [Hz]."""
+TOP_SPEED = 0.8
+"""Of the leader of a moving formation [m/s]; less than bodies drive."""
 _RADIO = ("noise", "loss", "delay")
 _LED = ("case-i", "case-ii", "star")
 _GRAPH = {"graph", "robots", "weight", "duration"}
@@ -125,6 +127,11 @@ def _refuse_moving(condition: Mapping[str, Any]) -> None:
             "experiment=moving is led by one robot whose words are heard: sight=given and "
             f"schedule={', '.join(_LED)} are allowed; got sight={condition['sight']} "
             f"schedule={condition['schedule']}"
+        )
+    if condition["speed"] > TOP_SPEED:
+        raise InvalidInputError(
+            f"bodies drive 1 m/s, and who follows catches up: speed is at most {TOP_SPEED:g} m/s; "
+            f"got {condition['speed']:g}"
         )
     turn = 2.0 * math.pi / condition["turn_rate"]
     if condition["duration"] < turn:

@@ -28,15 +28,9 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PU
     if condition["mode"] == "linear":
         return linear.trial(condition, seed, parts)
     # MuJoCo, OpenCV and OSQP are loaded by the trials that use them
-    from experiments.consensus import agreement, average, moving, physical
+    from experiments.consensus.teams import measure, team_of
 
-    if condition["experiment"] == "agreement":
-        return agreement.trial(condition, seed, parts)
-    if condition["experiment"] == "moving":
-        return moving.trial(condition, seed, parts)
-    if condition["experiment"] == "average":
-        return average.trial(condition, seed, parts)
-    return physical.trial(condition, seed, parts)
+    return measure(team_of(condition, seed, parts))
 
 
 def world(condition: Mapping[str, Any]) -> Any:
@@ -47,7 +41,8 @@ def world(condition: Mapping[str, Any]) -> Any:
     Raises:
         InvalidInputError: As :func:`trial`; ``mjmr trial`` asks here whether a condition can be.
     """
-    from experiments.consensus import physical, study
+    from experiments.consensus import study
+    from experiments.consensus.teams import team_of
 
     refuse(condition)
     if condition["mode"] == "linear":
@@ -56,13 +51,14 @@ def world(condition: Mapping[str, Any]) -> Any:
         kept = {name: condition[name] for name in ("experiment", "robots", "graph")}
         kept["experiment"] = "graph" if kept["experiment"] == "graph" else "three"
         condition = study.condition(**kept, mode="physical")
-    return physical.Team(condition, 0).simulation.world
+    return team_of(condition, 0).simulation.world
 
 
 def prepare() -> None:
     """Compile what trials call, by a short one."""
-    from experiments.consensus import physical, study
+    from experiments.consensus import study
+    from experiments.consensus.teams import team_of
 
     for sight in ("given", "rays"):
         condition = study.condition(mode="physical", sight=sight, duration=0.2)
-        physical.Team(condition, 1000).run(0.2)
+        team_of(condition, 1000).run(0.2)
