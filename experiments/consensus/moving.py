@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from controllers.consensus import hand_position, harmonic_error, ramp_lag
-from experiments.consensus.arena import HAND
+from controllers.consensus import harmonic_error, ramp_lag
 from experiments.consensus.linear import START
 from experiments.consensus.physical import RATE, Metrics, Team
 from experiments.consensus.roles import PUBLISHED
@@ -130,32 +129,25 @@ class MovingTeam(Team):
         low = np.minimum(way.min(axis=0), start.min(axis=0)) - room
         return start, offsets, (*low, *(np.maximum(way.max(axis=0), start.max(axis=0)) + room))
 
-    def _by_radio(self, time: float) -> tuple[Array, NDArray[np.bool_]]:
-        assert self.radio is not None
-        pose = self.robots.localizer.read()
-        hands = hand_position(pose, HAND)
+    def _words(
+        self, time: float, output: Array, heard: Array | None, gains: Array
+    ) -> tuple[Array, tuple[Array, Array] | None]:
         offsets, point = self.path.offsets(time), self.path.point(time)
-        output = hands - offsets[0]
-        k = self.schedule.at(time)
-        gains, graph = self.schedule.gains[k], self.schedule.graphs[k]
-        reference = np.zeros((2, self.n, 2))
+        reference, known = np.zeros((2, self.n, 2)), output
         if self.told:
-            if time > 0:
-                reference = _passed_on(self.radio.latest()[0][..., 2:], gains)
+            if heard is not None:
+                reference = _passed_on(heard[..., 2:], gains)
             reference[:, self.leader] = point[1:]
             known = np.concatenate([output, *reference], axis=1)
             reference = reference + offsets[1:]
-        else:
-            known = output
         reference[:, self.leader] = point[1:] + offsets[1:, self.leader]
-        self.radio.broadcast_arrays(known.astype(np.float32))
-        relative = self.radio.latest()[0][..., :2] - output[:, None]
-        relative[self.leader, self.leader] = point[0] - output[self.leader]
         moves, bends = reference
-        command = self.control.step(
-            pose[:, 2], self.robots.executed, relative, gains, hands, (moves, bends)
-        )
-        return command, graph
+        return known, (moves, bends)
+
+    def _relative(self, time: float, relative: Array, output: Array) -> Array:
+        # the leader's own output gives way to the path's point
+        relative[self.leader, self.leader] = self.path.point(time)[0] - output[self.leader]
+        return relative
 
     def _look(self) -> None:
         self._errors.append(self.log.output - self.path.point(self.simulation.time)[0])

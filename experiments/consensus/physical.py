@@ -149,14 +149,30 @@ class Team:
         assert self.radio is not None
         pose = self.robots.localizer.read()
         hands = hand_position(pose, HAND)
-        output = hands - self.offsets
-        self.radio.broadcast_arrays(output.astype(np.float32))
-        heard, _ = self.radio.latest()
+        output = hands - self.formation(time)
         k = self.schedule.at(time)
         gains = self.schedule.gains[k]
-        relative = heard - output[:, None]
-        command = self.control.step(pose[:, 2], self.robots.executed, relative, gains, hands)
+        # what is told now is heard in the next tick at the earliest
+        heard = self.radio.latest()[0] if time > 0 else None
+        told, reference = self._words(time, output, heard, gains)
+        self.radio.broadcast_arrays(told.astype(np.float32))
+        if heard is None:
+            heard = np.full((self.n, self.n, told.shape[1]), np.nan)
+        relative = self._relative(time, heard[..., :2] - output[:, None], output)
+        command = self.control.step(
+            pose[:, 2], self.robots.executed, relative, gains, hands, reference
+        )
         return command, self.schedule.graphs[k]
+
+    def _words(
+        self, time: float, output: Array, heard: Array | None, gains: Array
+    ) -> tuple[Array, tuple[Array, Array] | None]:
+        """What robots tell (n, c), their outputs first, and what they take for their motion."""
+        return output, None
+
+    def _relative(self, time: float, relative: Array, output: Array) -> Array:
+        """Outputs from robot row to robot column (n, n, 2) [m], as the law sees them."""
+        return relative
 
     def _by_sight(self, time: float) -> tuple[Array, NDArray[np.bool_]]:
         yaw = self.robots.compass.read()
