@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controllers.consensus import harmonic_error, ramp_lag
+from experiments.consensus.graphs import leader_of
 from experiments.consensus.linear import START
 from experiments.consensus.physical import RATE, Metrics, Team
 from experiments.consensus.roles import PUBLISHED
@@ -115,7 +116,7 @@ class MovingTeam(Team):
 
     def _places(self, condition: Mapping[str, Any], streams: Streams) -> tuple[Array, Array, Any]:
         start, offsets, _ = super()._places(condition, streams)
-        self.leader = int(np.flatnonzero(self.schedule.graphs[0].sum(axis=1) == 1)[0])
+        self.leader = leader_of(condition["schedule"])
         self.path = Path(
             condition["path"], START[self.leader], condition["speed"], condition["turn_rate"],
             offsets,

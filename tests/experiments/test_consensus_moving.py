@@ -176,6 +176,21 @@ def test_one_bad_run_fails_a_claim(name, given, good, bad):
     assert verdict(good, bad, good) == "fails"
 
 
+def test_followers_are_drawn_from_where_their_own_leader_goes(tmp_path, monkeypatch):
+    """Outputs that stand on the path of robot 2, who leads, are nowhere away from it."""
+    condition = study.condition(**{**MOVING, "schedule": "case-ii", "weight": 0.2})
+    at = [[2.0 + 0.2 * t, 5.0] for t in range(4)]
+    words = " ".join(f"{v:.3f}" for v in np.repeat(at, 3, axis=0).ravel())
+    metrics = {"outputs": words, **{f"theory_{i}_m": 1.0 for i in (1, 2, 3)}}
+    drawn = []
+    monkeypatch.setattr(
+        "matplotlib.axes.Axes.plot", lambda axes, y, *a, **k: drawn.append((y, k["label"]))
+    )
+    plots(Table([Row(condition, 0, "ok", metrics)], study.parameters), tmp_path)
+    assert [np.max(y) for y, _ in drawn] == [1e-3, 1e-3]
+    assert [label for _, label in drawn] == ["line, law alone", None]
+
+
 def test_plots_show_what_ran(tmp_path):
     rows = []
     for given in ({**MOVING, "weight": 0.2}, {**AVERAGE, "duration": 3.0}):
