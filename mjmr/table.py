@@ -5,6 +5,7 @@ the rows it is asked for, so that a claim which rests on a failed trial is found
 author did not think of failures.
 """
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -68,6 +69,15 @@ class Table:
         told = ", ".join(f"{n}={','.join(map(str, v))}" for n, v in typed.items())
         return self._view(
             [i for i in self._index if matches(self._all[i].condition, typed)],
+            ", ".join(filter(None, (self._filter, told))),
+        )
+
+    def where_seed(self, least: int = 0, below: int | None = None) -> "Table":
+        """The trials whose seed is at least ``least`` and, unless None, less than ``below``."""
+        end = math.inf if below is None else below
+        told = f"seed >= {least}" + ("" if below is None else f" and < {below}")
+        return self._view(
+            [i for i in self._index if least <= self._all[i].seed < end],
             ", ".join(filter(None, (self._filter, told))),
         )
 

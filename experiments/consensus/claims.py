@@ -10,6 +10,7 @@ from experiments.consensus import (
     claims_beyond,
     claims_moving,
     claims_physical,
+    claims_reference,
     claims_theory,
     quotes,
 )
@@ -35,6 +36,7 @@ def claims() -> list[Claim]:
         *claims_physical.claims(),
         *claims_beyond.claims(),
         *claims_moving.claims(),
+        *claims_reference.claims(),
     ]
 
 

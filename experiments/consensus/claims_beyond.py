@@ -3,7 +3,7 @@
 from typing import Any
 
 from experiments.consensus.claims_physical import BODY, claim
-from experiments.consensus.evidence import largest, least, mean, share, total
+from experiments.consensus.evidence import first, largest, least, mean, share, total
 from mjmr.claims import Bound, Claim
 
 AGREED = 0.1
@@ -23,7 +23,7 @@ def claims() -> list[Claim]:
 
 
 def _sight() -> list[Claim]:
-    agreed = share("spread_m", AGREED)
+    agreed = first(share("spread_m", AGREED))
     return [
         claim("cone-60-alone", "60 degrees, random headings, no scan; share of runs that agree "
                "to 0.1 m by 80 s", Bound("<=", 0.5), {**ALONE, "cone_deg": 60.0}, agreed, "",

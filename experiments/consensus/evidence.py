@@ -1,6 +1,7 @@
 """Measures the claims of this study share."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -9,6 +10,8 @@ from mjmr.claims import Evidence
 from mjmr.table import Table
 
 Measure = Callable[[Table], Evidence]
+SEEN_BEFORE = 6
+"""Seeds of runs by sight when their shares were first decided."""
 
 
 def largest(metric: str) -> Measure:
@@ -58,6 +61,28 @@ def share(metric: str, most: float) -> Measure:
     return evaluate
 
 
+def first(measure: Measure) -> Measure:
+    """A measure over the seeds that were run when its claim was first decided."""
+    return lambda table: measure(table.where_seed(below=SEEN_BEFORE))
+
+
+def unseen(measure: Measure) -> Measure:
+    """A measure over the seeds that came after them."""
+    return lambda table: measure(table.where_seed(least=SEEN_BEFORE))
+
+
+def outside(metric: str, low: float, high: float) -> Measure:
+    """How far a metric is outside of a range, largest; exact. NaN in one makes it infinite."""
+
+    def evaluate(table: Table) -> Evidence:
+        values = np.asarray(table.values(metric), dtype=np.float64)
+        values = np.where(np.isnan(values), np.inf, values)
+        off = np.maximum(np.maximum(low - values, values - high), 0.0)
+        return Evidence(float(off.max()), n=len(values))
+
+    return evaluate
+
+
 def off(wanted: dict[float, tuple[float, float]]) -> Measure:
     """Largest distance of the consensus point from a table by dwell [m]."""
 
@@ -81,7 +106,7 @@ def off_point(x: float, y: float) -> Measure:
     return evaluate
 
 
-def off_values(metric: str, by: str, wanted: dict[float, float]) -> Measure:
+def off_values(metric: str, by: str, wanted: Mapping[Any, float]) -> Measure:
     """Largest difference of a metric from what is wanted for each value of a parameter."""
 
     def evaluate(table: Table) -> Evidence:

@@ -78,6 +78,8 @@ def _large(
         Grid(**BODY, noise=0.05, seeds=bodies),
         Grid(**BODY, loss=0.5, seeds=bodies),
         Grid(**BODY, delay=0.5, seeds=bodies),
+        Grid(**BODY, delay=2.0, seeds=2),
+        Grid(**BODY, loss=0.9, seeds=bodies),
         Grid(**BODY, noise=0.05, loss=0.5, delay=0.5, seeds=bodies),
         Grid(**BODY, fault=("follower-dies", "leader-freezes"), seeds=bodies),
         # E

@@ -281,3 +281,12 @@ def test_a_tolerance_is_for_equality_alone():
             Bound(op, 2.0, tolerance=0.005)
     with pytest.raises(InvalidInputError, match="tolerance with == alone"):
         Bound("in", (1.0, 2.0), tolerance=0.005)
+
+
+def test_a_table_can_be_narrowed_to_seeds():
+    whole = table(*(row(seed) for seed in range(6)))
+    assert whole.where_seed(least=4).values("x").tolist() == [4.0, 5.0]
+    assert whole.where_seed(below=2).values("x").tolist() == [0.0, 1.0]
+    assert whole.where_seed(least=2, below=3).seeds.tolist() == [2]
+    with pytest.raises(NoTrialsError, match="seed >= 6"):
+        whole.where_seed(least=6).values("x")
