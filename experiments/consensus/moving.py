@@ -70,11 +70,25 @@ class Path:
             return np.array([(1 + SWING * s) * d, SWING * w * c * d, -SWING * w * w * s * d])
         return np.array([d, 0 * d, 0 * d])
 
-    def error_rms(self, gains: Array, leader: int, delay: float, told: bool) -> Array:
-        """Of each robot's output from the path (n,) [m], in the end, by the closed loop."""
+    def swing(self, errors: Array, times: Array) -> NDArray[np.complex128]:
+        """What :meth:`error` predicts, of outputs less the path (k, n, 2) [m] over whole turns."""
+        if self.kind == "line":
+            return errors.mean(axis=0).astype(complex)
+        return 2.0 * np.einsum("kij,k->ij", errors, np.exp(-1j * self.rate * times)) / len(times)
+
+    def rms(self, amplitudes: NDArray[np.complex128]) -> Array:
+        """Root mean square (n,) [m] of errors with these amplitudes."""
+        share = 1.0 if self.kind == "line" else 0.5
+        return np.sqrt(share * (np.abs(amplitudes) ** 2).sum(axis=1))
+
+    def error(self, gains: Array, leader: int, delay: float, told: bool) -> NDArray[np.complex128]:
+        """Outputs less the path in the end (n, 2) [m], by the closed loop.
+
+        On a line what they are, else the complex amplitudes at the rate of turn.
+        """
         if self.kind == "line":
             lag = ramp_lag(gains, leader, [self.speed, 0.0], delay=delay, told=told)
-            return np.hypot(*lag.T)
+            return -lag.astype(complex)
         path, swing = np.zeros(2, dtype=complex), 0j * self.places
         if self.kind == "circle":
             path = self.speed / self.rate * np.array([-1j, -1.0])
@@ -82,8 +96,7 @@ class Path:
             swing = self.places + 1j * np.column_stack([self.places[:, 1], -self.places[:, 0]])
         else:
             swing = -1j * SWING * self.places
-        found = harmonic_error(gains, leader, self.rate, path, swing, delay=delay, told=told)
-        return np.sqrt((np.abs(found) ** 2).sum(axis=1) / 2.0)
+        return harmonic_error(gains, leader, self.rate, path, swing, delay=delay, told=told)
 
 
 class MovingTeam(Team):
@@ -93,7 +106,7 @@ class MovingTeam(Team):
         leader: Who knows the path.
         path: What the formation does.
         told: Whether velocities and accelerations are told.
-        theory: By the closed loop, of each robot's output from the path's point (n,) [m].
+        theory: Of outputs less the path, by the closed loop; see :meth:`Path.error`.
     """
 
     def __init__(
@@ -103,7 +116,13 @@ class MovingTeam(Team):
         self.told = condition["feedforward"] == "told"
         super().__init__(condition, seed, parts)
         self._errors: list[Array] = []
+        self._times: list[float] = []
         self.simulation.observe(self._look)
+
+    @property
+    def times(self) -> Array:
+        """Of :attr:`errors` (k,) [s]."""
+        return np.array(self._times)
 
     @property
     def errors(self) -> Array:
@@ -123,7 +142,8 @@ class MovingTeam(Team):
         )  # fmt: skip
         delay = max(condition["delay"], 1.0 / RATE)  # what is told in a tick is heard in the next
         # a loop that has no end, since somebody does not hear the leader, is told before it runs
-        self.theory = self.path.error_rms(self.schedule.gains[-1], self.leader, delay, self.told)
+        gains = self.schedule.gains[-1]
+        self.theory = self.path.error(gains, self.leader, delay, self.told)
         times = np.linspace(0.0, condition["duration"], 200)
         way = np.array([self.path.point(float(t))[0] for t in times])
         room = 1.5 + (1.0 + SWING) * np.hypot(*offsets.T).max()
@@ -151,7 +171,9 @@ class MovingTeam(Team):
         return relative
 
     def _look(self) -> None:
-        self._errors.append(self.log.output - self.path.point(self.simulation.time)[0])
+        time = self.simulation.time
+        self._times.append(time)
+        self._errors.append(self.log.output - self.path.point(time)[0])
 
 
 def _passed_on(heard: Array, gains: Array) -> Array:
@@ -169,21 +191,26 @@ def measure(team: MovingTeam) -> Metrics:
     Returns:
         ``rms_i_m`` of each robot's output from the path's point, ``theory_i_m`` by the closed
         loop, ``lag_off``, the largest difference of the two over followers as a share of the
-        latter (NaN if that is below 1 cm), ``formation_rms_m`` over the followers, and
-        ``leader_rms_m``; contacts of robots and with walls, distance and peaks.
+        latter (NaN if that is below 1 cm), ``swing_off`` likewise, of the errors' constant parts
+        (on a line) or swings, direction and phase included; ``formation_rms_m`` over the
+        followers, and ``leader_rms_m``; contacts of robots and with walls, distance and peaks.
     """
     team.run(team.condition["duration"])
     log, path = team.log, team.path
     turn = round(2.0 * math.pi / path.rate * RATE)
-    rms = np.sqrt((team.errors[-turn:] ** 2).sum(axis=2).mean(axis=0))
-    theory = team.theory
+    late = team.errors[-turn:]
+    rms = np.sqrt((late**2).sum(axis=2).mean(axis=0))
+    theory = path.rms(team.theory)
     follows = np.arange(team.n) != team.leader
     off = np.abs(rms - theory)[follows] / np.maximum(theory[follows], 1e-12)
+    apart = path.rms(path.swing(late, team.times[-turn:]) - team.theory)[follows]
+    apart = apart / np.maximum(theory[follows], 1e-12)
     found: Metrics = {f"rms_{i + 1}_m": float(v) for i, v in enumerate(rms)}
     found |= {f"theory_{i + 1}_m": float(v) for i, v in enumerate(theory)}
     return {
         **found,
         "lag_off": float(off.max()) if theory[follows].min() >= 0.01 else math.nan,
+        "swing_off": float(apart.max()) if theory[follows].min() >= 0.01 else math.nan,
         "formation_rms_m": float(np.sqrt((rms[follows] ** 2).mean())),
         "leader_rms_m": float(rms[team.leader]),
         "contacts": log.meter.episodes,
