@@ -101,7 +101,8 @@ class RatioConsensus:
     alike among itself and whom it heard in the round before. It tells each not the share but the
     sum of all shares so far; who hears it after a loss takes what it missed. Nothing is lost for
     good while links come back, and value over weight tends to the mean at every robot. Who goes out
-    of reach for ever takes along what was on its way to it.
+    of reach for ever takes along what was on its way to it. Given weights only grow: a sum of less
+    weight than what was taken was overtaken on its way, and is left; one heard again adds nothing.
 
     Source: C. N. Hadjicostis, N. H. Vaidya and A. D. Dominguez-Garcia, Robust distributed average
     consensus via exchange of running sums, IEEE TAC 61(6), 2016; after D. Kempe, A. Dobra and
@@ -128,6 +129,7 @@ class RatioConsensus:
         self.rounds = 0
         self._own = _weighted(values, weights, n)
         self._mass = self._own.copy()
+        self._owed = np.zeros((n, 2))  # of replace, not yet taken from what a robot has
         self._given = np.zeros((n, n, 2))  # running sums, giver first
         self._taken = np.zeros((n, n, 2))  # the last heard of them, taker first
         self._links = np.zeros((n, n), dtype=bool)
@@ -142,13 +144,17 @@ class RatioConsensus:
         """Robots have other numbers or weights from now on; arguments and errors as at first.
 
         Each puts the difference into what it has; the mean is followed as fast as rounds spread it.
+        Who loses more weight than half of what it has gives that up as more comes in, so that no
+        weight is ever negative; estimates are off the new mean until then.
         """
         new = _weighted(values, weights, len(self._own))
-        self._mass = self._mass + new - self._own
+        self._owed = self._owed + new - self._own
         self._own = new
+        self._settle()
 
     def message(self) -> Array:
         """Share, and what robots tell this round (n, 2 n): for each robot the sums given to it."""
+        self._settle()
         share = self._mass / (1.0 + self._links.sum(axis=1))[:, None]
         self._given += np.where(self._links[..., None], share[:, None], 0.0)
         self._mass = share
@@ -170,10 +176,19 @@ class RatioConsensus:
         heard = np.isfinite(sums[..., 0])
         np.fill_diagonal(heard, False)
         self._links = heard
-        self._mass = self._mass + np.where(heard[..., None], sums - self._taken, 0.0).sum(axis=1)
-        self._taken = np.where(heard[..., None], sums, self._taken)
+        newer = heard & (sums[..., 1] >= self._taken[..., 1])
+        self._mass = self._mass + np.where(newer[..., None], sums - self._taken, 0.0).sum(axis=1)
+        self._taken = np.where(newer[..., None], sums, self._taken)
         self.rounds += 1
         return self.estimate
+
+    def _settle(self) -> None:
+        """Put what is owed into what robots have, no more than half of whose weight it takes."""
+        lost = np.maximum(-self._owed[:, 1], 0.0)
+        room = 0.5 * self._mass[:, 1]
+        part = np.where(lost > room, room / np.maximum(lost, 1e-300), 1.0)[:, None] * self._owed
+        self._mass = self._mass + part
+        self._owed = self._owed - part
 
 
 def of_this_round(values: Array, sent: Array, since: float) -> Array:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from controllers.consensus.gains import check_gains
 from mjmr.errors import InvalidInputError
+from mjmr.finite import finite, numbers
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -31,14 +32,17 @@ def ramp_lag(
         told: Whether the velocity is told along the graph, so that followers add it.
 
     Raises:
-        InvalidInputError: Gains that cannot be, or somebody who does not hear the leader, not even
-            through others.
+        InvalidInputError: Gains, leader, velocity or delay that cannot be, or somebody who does not
+            hear the leader, not even through others.
     """
-    v = np.asarray(velocity, dtype=np.float64)
-    laplacian, follows = _followers(gains, leader)
-    others = 1.0 - np.diag(check_gains(gains))
-    rest = (0.0 if told else 2.0) + others[follows] * delay
-    lag = np.zeros((len(others), len(v)))
+    g, follows = _followers(gains, leader)
+    v = numbers(velocity)
+    if v is None or v.ndim != 1 or not np.isfinite(v).all():
+        raise InvalidInputError(f"a velocity is finite numbers (m,) [m/s]; got {velocity}")
+    others = 1.0 - np.diag(g)
+    rest = (0.0 if told else 2.0) + others[follows] * _late(delay)
+    lag = np.zeros((len(g), len(v)))
+    laplacian = np.eye(len(g)) - g
     lag[follows] = np.linalg.solve(laplacian[np.ix_(follows, follows)], rest[:, None] * v)
     return lag
 
@@ -61,14 +65,23 @@ def harmonic_error(
             by the delay; followers add them and those of their own offsets.
 
     Raises:
-        InvalidInputError: As :func:`ramp_lag`, or a rate that is not positive.
+        InvalidInputError: As :func:`ramp_lag`, a rate that is not positive and finite, or
+            amplitudes that are not finite or do not fit.
     """
-    if not rate > 0:
+    speed = finite(rate, ())
+    if speed is None or not speed > 0:
         raise InvalidInputError(f"a rate is above 0; got {rate} rad/s")
-    g = check_gains(gains)
-    _, follows = _followers(g, leader)
-    p, d = np.asarray(path, dtype=np.complex128), np.asarray(offsets, dtype=np.complex128)
-    s, late = 1j * rate, np.exp(-1j * rate * delay)
+    g, _ = _followers(gains, leader)
+    p, d = numbers(path, np.complex128), numbers(offsets, np.complex128)
+    if p is None or p.ndim != 1 or not np.isfinite(p).all():
+        raise InvalidInputError(f"the amplitudes of a path are finite numbers (m,) [m]; got {path}")
+    shape = (len(g), len(p))
+    if d is None or d.shape != shape or not np.isfinite(d).all():
+        given = "no numbers" if d is None else f"shape {d.shape}"
+        raise InvalidInputError(
+            f"the amplitudes of offsets are finite numbers of shape {shape} [m]; got {given}"
+        )
+    s, late = 1j * rate, np.exp(-1j * rate * _late(delay))
     swing = s * s + 2.0 * s
     heard = g - np.diag(np.diag(g))
     out = heard.sum(axis=1)
@@ -83,13 +96,13 @@ def harmonic_error(
         source[leader] = p
         drive = drive + swing * (np.linalg.solve(known, source) + d)
     drive[leader] = p
-    return np.linalg.solve(matrix, drive) - p
+    return np.asarray(np.linalg.solve(matrix, drive) - p, dtype=np.complex128)
 
 
 def _followers(gains: ArrayLike, leader: int) -> tuple[Array, NDArray[np.int64]]:
-    """I - G with rows of weights given to others alone, and who follows."""
+    """Gains (n, n), and who follows."""
     g = check_gains(gains)
-    if not 0 <= leader < len(g):
+    if not isinstance(leader, (int, np.integer)) or not 0 <= leader < len(g):
         raise InvalidInputError(f"the leader is one of 0 to {len(g) - 1}; got {leader}")
     reached = {leader}
     while True:
@@ -100,4 +113,11 @@ def _followers(gains: ArrayLike, leader: int) -> tuple[Array, NDArray[np.int64]]
     if len(reached) < len(g):
         deaf = min(set(range(len(g))) - reached)
         raise InvalidInputError(f"robot {deaf} does not hear robot {leader}, directly or not")
-    return np.eye(len(g)) - g, np.array([i for i in range(len(g)) if i != leader])
+    return g, np.array([i for i in range(len(g)) if i != leader], dtype=np.int64)
+
+
+def _late(delay: float) -> float:
+    found = finite(delay, ())
+    if found is None or not found >= 0:
+        raise InvalidInputError(f"a delay is 0 or more and finite; got {delay} s")
+    return float(found)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError
+from mjmr.finite import finite
 from mjmr.jit import njit
 
 # Lengths that agree within this [m] are equal: rounding must not turn touching into hitting.
@@ -75,8 +76,8 @@ def check_bounds(bounds: ArrayLike, radius: float) -> NDArray[np.float64]:
     Raises:
         InvalidInputError: Wrong shape, not finite, or no room for a disc of ``radius`` [m].
     """
-    b = np.array(bounds, dtype=np.float64)
-    if b.shape != (4,) or not np.isfinite(b).all():
+    b = finite(bounds, (4,))
+    if b is None:
         raise InvalidInputError(f"bounds must be 4 finite numbers, not {bounds!r}")
     if b[2] - b[0] <= 2.0 * radius or b[3] - b[1] <= 2.0 * radius:
         raise InvalidInputError(f"bounds {b.tolist()} leave no room for radius {radius} m")

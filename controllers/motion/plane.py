@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from controllers.motion.trapezoid import Limits, duration, velocity_after
 from mjmr.errors import InvalidInputError
+from mjmr.finite import finite
 from mjmr.jit import njit
 
 NEAR = 0.010
@@ -107,8 +108,8 @@ def synchronised(
 
 
 def _vector(name: str, value: ArrayLike) -> NDArray[np.float64]:
-    v = np.asarray(value, dtype=np.float64)
-    if v.shape != (2,) or not np.isfinite(v).all():
+    v = finite(value, (2,))
+    if v is None:
         raise InvalidInputError(f"{name} must be two finite numbers, not {value!r}")
     return v
 

@@ -150,7 +150,8 @@ study = Study(
                     unit="rows 0 or more that sum to one, 0 where nobody is heard",
                     doc="for every graph of a schedule and every look: heard (n, n) bool, row "
                     "hears column and itself, and the condition's weight; experiment graph has "
-                    "controllers.consensus:EqualGains unless another takes the role",
+                    "controllers.consensus:EqualGains unless another takes the role, and "
+                    "experiment average has weights of its own, those of rule",
                     check="experiments.consensus.roles:refuse_gains",
                 ),
             ),

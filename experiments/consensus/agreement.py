@@ -11,7 +11,17 @@ from experiments.consensus.roles import PUBLISHED
 from mjmr.geometry import wrap_angle
 
 
-def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED) -> Metrics:
+class AgreementTeam(Team):
+    """Robots that agree by rays and carry cameras besides."""
+
+    def __init__(
+        self, condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED
+    ):
+        """See :class:`experiments.consensus.physical.Team`."""
+        super().__init__({**condition, "sight": "rays"}, seed, parts, cameras=True)
+
+
+def measure(team: AgreementTeam) -> Metrics:
     """Robots agree by rays while cameras look at the same instants.
 
     Returns:
@@ -20,7 +30,7 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PU
         ``inside_same``, the share without pairs within 2 degrees of the cone's edge or 0.2 m of
         the range.
     """
-    team = Team({**condition, "sight": "rays"}, seed, parts, cameras=True)
+    condition = team.condition
     eyes: Eyes = team.cameras
     cone = np.radians(condition["cone_deg"])
     by_rays, by_camera = [], []

@@ -5,6 +5,7 @@ hears whom changes as they pass each other. Each reads the same quantity once, w
 own. Ten times a second they tell each other what the service asks them to, and nothing else.
 """
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -22,9 +23,11 @@ from controllers.consensus import (
 from experiments.consensus.arena import HAND, add_team, hall
 from experiments.consensus.physical import RATE, Metrics
 from experiments.consensus.refusals import ROUNDS, refuse_unfit
+from experiments.consensus.roles import PUBLISHED
 from mjmr.metrics import ContactMeter
 from mjmr.radio import Radio
 from mjmr.randomness import Streams
+from mjmr.reach import Reach
 from mjmr.sensors.localizer import Localizer
 from mjmr.simulation import Simulation
 
@@ -34,6 +37,7 @@ QUANTITY, DEVIATION = 20.0, 1.0
 LANES = 1.8
 """Apart [m]."""
 _HALF = np.array([3.0, 0.25])  # m, half axes of a lane, an ellipse
+_EVERY = round(RATE / ROUNDS)  # ticks from round to round
 _PACE = 0.4  # m/s, at most, on a lane
 _STANDING = 1.0  # m along the lane from its middle, at most, for robots that stand
 RULES = {"metropolis": AverageConsensus, "ratio": RatioConsensus}
@@ -60,7 +64,98 @@ class Patrol:
         return np.array([self._middle + on, moves, -(rate**2) * on], dtype=np.float64)
 
 
-def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
+class AverageTeam:
+    """Robots on their lanes, what they drive by, tell each other, and what is measured of them.
+
+    Attributes:
+        n: Robots.
+        condition: See the study's parameters.
+        readings: What each measured (n,).
+        service: What they agree with.
+        rounds: Of telling so far.
+        connected: Of these, in which everybody was linked to everybody, directly or not.
+        links: Of these, pairs in reach, summed.
+    """
+
+    def __init__(
+        self, condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED
+    ):
+        """Put robots on their lanes.
+
+        Args:
+            condition: See the study's parameters.
+            seed: Of the trial.
+            parts: Classes of the roles; ``law`` alone is used.
+
+        Raises:
+            InvalidInputError: Parameters that do not go together.
+        """
+        refuse_unfit(condition)
+        self.condition = condition
+        n, streams = condition["robots"], Streams(seed)
+        self.n = n
+        self.patrol = Patrol(n, condition["patrol"], streams.generator("patrol"))
+        self.readings = QUANTITY + DEVIATION * streams.generator("readings").normal(size=n)
+        place, moves, _ = self.patrol.at(0.0)
+        ahead = moves if condition["patrol"] else np.tile([1.0, 0.0], (n, 1))
+        yaw = np.arctan2(ahead[:, 1], ahead[:, 0])
+        poses = np.column_stack([place, yaw])
+        poses[:, :2] -= HAND * np.column_stack([np.cos(yaw), np.sin(yaw)])
+        room = _HALF[0] + 2.0
+        world = hall((-room, -2.0, room, LANES * (n - 1) + 2.0))
+        self.robots = add_team(world, poses, calibrated=True, masts=False)
+        self.robots.mount(Localizer(rate=RATE))
+        self.simulation = Simulation(world, seed=seed, control_period=1 / RATE, dt_max=0.01)
+        reach = condition["reach"]
+        self.radio = Radio(
+            self.simulation, range=reach, latency=condition["delay"], loss=condition["loss"]
+        )
+        self.control = HandTeam(HAND, 1 / RATE, law=parts["law"](n))
+        self.service = RULES[condition["rule"]](self.readings)
+        self.meter = ContactMeter(self.simulation)
+        self.rounds = self.connected = self.links = 0
+        self._near = Reach(self.simulation, reach)  # for metrics
+        self._aims, self._own, self._gains = np.full((n, n, 2), np.nan), np.arange(n), np.eye(n)
+        self._ticks, self._told_at = 0, math.nan
+
+    def run(self, duration: float) -> None:
+        """Drive and agree for a duration [s]."""
+        for time in self.simulation.ticks(duration):
+            self.tick(time)
+
+    def tick(self, time: float) -> None:
+        """Drive at ``time`` [s] and tell, if it is time to; inside of the simulation's ticks."""
+        pose = self.robots.localizer.read()
+        place, moves, bends = self.patrol.at(time)
+        self._aims[self._own, self._own] = place - hand_position(pose, HAND)
+        command = self.control.step(
+            pose[:, 2], self.robots.executed, self._aims, self._gains, reference=(moves, bends)
+        )
+        self.robots.drive(command)
+        if self._ticks % _EVERY == 0:
+            self._tell(time)
+        self._ticks += 1
+
+    def caption(self) -> str:
+        """What they make of the mean now."""
+        found = self.service.estimate
+        mean = self.readings.mean()
+        return f"estimates {found.min():.2f} to {found.max():.2f}, mean of readings {mean:.2f}"
+
+    def _tell(self, time: float) -> None:
+        if self.rounds:
+            self.service.hear(of_this_round(*self.radio.latest(), self._told_at))
+        self.radio.broadcast_arrays(self.service.message())
+        self._told_at = time
+        near = self._near.now()
+        self.rounds += 1
+        self.connected += rooted(near)
+        self.links += int(np.triu(near, 1).sum())
+        if self.simulation.noted:
+            self.simulation.note(links=near & ~np.eye(self.n, dtype=bool))
+
+
+def measure(team: AverageTeam) -> Metrics:
     """How well robots know the mean of their readings in the end.
 
     Returns:
@@ -70,75 +165,18 @@ def trial(condition: Mapping[str, Any], seed: int) -> Metrics:
         their mean, for comparison; ``connected``, the share of rounds in which everybody was
         linked to everybody, directly or not; ``bytes_per_s`` that a robot sends.
     """
-    refuse_unfit(condition)
-    n, streams = condition["robots"], Streams(seed)
-    patrol = Patrol(n, condition["patrol"], streams.generator("patrol"))
-    readings = QUANTITY + DEVIATION * streams.generator("readings").normal(size=n)
-    point = patrol.at(0.0)
-    ahead = point[1] if condition["patrol"] else np.tile([1.0, 0.0], (n, 1))
-    yaw = np.arctan2(ahead[:, 1], ahead[:, 0])
-    poses = np.column_stack([point[0], yaw])
-    poses[:, :2] -= HAND * np.column_stack([np.cos(yaw), np.sin(yaw)])
-    room = _HALF[0] + 2.0
-    world = hall((-room, -2.0, room, LANES * (n - 1) + 2.0))
-    robots = add_team(world, poses, calibrated=True, masts=False)
-    robots.mount(Localizer(rate=RATE))
-    simulation = Simulation(world, seed=seed, control_period=1 / RATE, dt_max=0.01)
-    reach = condition["reach"]
-    radio = Radio(simulation, range=reach, latency=condition["delay"], loss=condition["loss"])
-    control, service = HandTeam(HAND, 1 / RATE), RULES[condition["rule"]](readings)
-    watch = _Links(simulation, robots, reach)
-    meter = ContactMeter(simulation)
-    every, told_at = round(RATE / ROUNDS), None
-    for tick, time in enumerate(simulation.ticks(condition["duration"])):
-        pose = robots.localizer.read()
-        point = patrol.at(time)
-        aims = np.full((n, n, 2), np.nan)
-        aims[np.arange(n), np.arange(n)] = point[0] - hand_position(pose, HAND)
-        moves = (point[1], point[2])
-        robots.drive(control.step(pose[:, 2], robots.executed, aims, np.eye(n), reference=moves))
-        if tick % every == 0:
-            if told_at is not None:
-                service.hear(of_this_round(*radio.latest(), told_at))
-            radio.broadcast_arrays(service.message())
-            told_at = time
-            watch.count()
-    estimate, mean = service.estimate, float(readings.mean())
+    duration = team.condition["duration"]
+    team.run(duration)
+    estimate, mean = team.service.estimate, float(team.readings.mean())
     return {
         "average_error": float(np.abs(estimate - mean).max()),
         "average_bias": float(estimate.mean() - mean),
         "disagreement": float(np.ptp(estimate)),
-        "reading_error": float(np.abs(readings - mean).max()),
-        "rounds": service.rounds,
-        "connected": watch.connected / max(watch.rounds, 1),
-        "links": watch.links / max(watch.rounds, 1),
-        "crowded": int(getattr(service, "crowded", 0)),
-        "bytes_per_s": float(radio.bytes_sent.mean() / condition["duration"]),
-        "contacts": meter.episodes,
+        "reading_error": float(np.abs(team.readings - mean).max()),
+        "rounds": team.service.rounds,
+        "connected": team.connected / max(team.rounds, 1),
+        "links": team.links / max(team.rounds, 1),
+        "crowded": int(getattr(team.service, "crowded", 0)),
+        "bytes_per_s": float(team.radio.bytes_sent.mean() / duration),
+        "contacts": team.meter.episodes,
     }
-
-
-class _Links:
-    """Who was in reach of whom, for metrics: observers' eyes alone.
-
-    Attributes:
-        rounds: Counted.
-        connected: Of these, in which everybody was linked to everybody, directly or not.
-        links: Of these, pairs in reach, summed.
-    """
-
-    def __init__(self, simulation: Simulation, robots: Any, reach: float):
-        self._simulation, self._robots, self._reach = simulation, robots, reach
-        self._near = np.eye(robots.n, dtype=bool)
-        self.rounds = self.connected = self.links = 0
-        simulation.observe(self._look)
-
-    def count(self) -> None:
-        """Count the links there were at the last look."""
-        self.rounds += 1
-        self.connected += rooted(self._near)
-        self.links += int(np.triu(self._near, 1).sum())
-
-    def _look(self) -> None:
-        at = self._simulation.truth.poses(self._robots)[:, :2]
-        self._near = ((at[:, None] - at[None]) ** 2).sum(axis=2) <= self._reach**2

@@ -25,7 +25,7 @@ MEAN = "beyond the paper: average consensus by radio"
 
 def claims() -> list[Claim]:
     """Every claim of this module."""
-    return [*_moving(), *_average()]
+    return [*_moving(), *_directed(), *_average()]
 
 
 def _moving() -> list[Claim]:
@@ -56,6 +56,24 @@ def _moving() -> list[Claim]:
         claim("moving-contacts", "contacts of two robots, all runs of moving formations, side "
               "4 m, sum", Bound("<=", 0.0), {"mode": "physical", "experiment": "moving"},
               total("contacts"), "", TRACKS),
+    ]  # fmt: skip
+
+
+def _directed() -> list[Claim]:
+    """What sizes alone do not tell: that followers are behind, and how far in phase."""
+    how = (
+        "written later, seed 1000 seen: as {}, difference of the errors' constant parts (line) or "
+        "swings from the closed loop's, direction and phase included, a share, largest; on a line "
+        "a link adds V / 50"
+    )
+    told = {
+        "line": ("line", 0.03), "circle": ("circle", 0.03), "turn": ("rotate", 0.05),
+        "swing": ("scale", 0.05),
+    }  # fmt: skip
+    return [
+        claim(f"moving-{name}-directed", how.format(f"moving-{name}-lag"), Bound("<=", bound),
+              {**LAW, "path": path}, largest("swing_off"), "", TRACKS)
+        for name, (path, bound) in told.items()
     ]  # fmt: skip
 
 

@@ -4,8 +4,7 @@ import dataclasses
 from pathlib import Path
 from typing import Any
 
-from experiments.consensus.moving import MovingTeam
-from experiments.consensus.physical import Team
+from experiments.consensus.teams import team_of
 from mjmr.film import Film
 from mjmr.film_options import FilmOptions
 from mjmr.parts import Parts
@@ -28,22 +27,11 @@ SHOWN: tuple[tuple[str, dict[str, Any]], ...] = (
 
 
 def show(study: Study, changes: dict[str, Any], seed: int) -> Recording:
-    """Run three robots in MuJoCo, with the study's choice of parts, and record them."""
+    """Run robots in MuJoCo, with the study's choice of parts, and record them."""
     parts = Parts(study.parts, study.chosen)
     condition = study.condition(mode="physical", **changes)
-    kind = MovingTeam if condition["experiment"] == "moving" else Team
-    team = kind(condition, seed, parts)
-
-    def caption() -> str:
-        hears = [
-            f"{i} hears {j}"
-            for i in range(team.n)
-            for j in range(team.n)
-            if i != j and team.log.heard and team.log.heard[-1][i, j]
-        ]
-        return f"spread {team.log.spread_now:.2f} m; {', '.join(hears) or 'nobody hears anybody'}"
-
-    recording = Recording(team.simulation, caption)
+    team = team_of(condition, seed, parts)
+    recording = Recording(team.simulation, team.caption)
     team.run(SECONDS)
     return recording
 

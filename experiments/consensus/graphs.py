@@ -73,6 +73,11 @@ class Schedule:
         return check_structure(self.graphs[-tail:], self.gains[-tail:])
 
 
+def leader_of(name: str) -> int:
+    """Who hears nobody in a schedule's first graph."""
+    return int(np.flatnonzero(_CYCLES[name][0].sum(axis=1) == 1)[0])
+
+
 def three(
     name: str, dwell: float, duration: float, weight: float, rng: np.random.Generator, rule: Any
 ) -> Schedule:

@@ -123,6 +123,13 @@ class Team:
             if until_agreed and self.log.spread_now <= _NEAR:
                 return
 
+    def caption(self) -> str:
+        """How far they are now, and who heard whom at the last look."""
+        heard = self.log.heard[-1] if self.log.heard else np.zeros((self.n, self.n), dtype=bool)
+        links = zip(*np.nonzero(heard & ~np.eye(self.n, dtype=bool)), strict=True)
+        hears = ", ".join(f"{i} hears {j}" for i, j in links) or "nobody hears anybody"
+        return f"spread {self.log.spread_now:.2f} m; {hears}"
+
     def formation(self, time: float) -> Array:
         """Offsets (n, 2) [m] at ``time`` [s]."""
         return self.offsets
@@ -142,14 +149,30 @@ class Team:
         assert self.radio is not None
         pose = self.robots.localizer.read()
         hands = hand_position(pose, HAND)
-        output = hands - self.offsets
-        self.radio.broadcast_arrays(output.astype(np.float32))
-        heard, _ = self.radio.latest()
+        output = hands - self.formation(time)
         k = self.schedule.at(time)
         gains = self.schedule.gains[k]
-        relative = heard - output[:, None]
-        command = self.control.step(pose[:, 2], self.robots.executed, relative, gains, hands)
+        # what is told now is heard in the next tick at the earliest
+        heard = self.radio.latest()[0] if time > 0 else None
+        told, reference = self._words(time, output, heard, gains)
+        self.radio.broadcast_arrays(told.astype(np.float32))
+        if heard is None:
+            heard = np.full((self.n, self.n, told.shape[1]), np.nan)
+        relative = self._relative(time, heard[..., :2] - output[:, None], output)
+        command = self.control.step(
+            pose[:, 2], self.robots.executed, relative, gains, hands, reference
+        )
         return command, self.schedule.graphs[k]
+
+    def _words(
+        self, time: float, output: Array, heard: Array | None, gains: Array
+    ) -> tuple[Array, tuple[Array, Array] | None]:
+        """What robots tell (n, c), their outputs first, and what they take for their motion."""
+        return output, None
+
+    def _relative(self, time: float, relative: Array, output: Array) -> Array:
+        """Outputs from robot row to robot column (n, n, 2) [m], as the law sees them."""
+        return relative
 
     def _by_sight(self, time: float) -> tuple[Array, NDArray[np.bool_]]:
         yaw = self.robots.compass.read()
@@ -320,10 +343,9 @@ class Log:
                 self.heard.append(team.schedule.graphs[team.schedule.at(time)])
 
 
-def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED) -> Metrics:
-    """Metrics of one physical condition."""
-    team = Team(condition, seed, parts)
-    team.run(condition["duration"], until_agreed=team.many)
+def measure(team: Team) -> Metrics:
+    """Metrics of three robots, or of a crowd under one graph."""
+    team.run(team.condition["duration"], until_agreed=team.many)
     log = team.log
     common: Metrics = {
         "spread_m": log.spread_now,
@@ -356,7 +378,7 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PU
         found["reducible"] = team.sight.reducible / team.sight.looks
         found["rooted"] = team.sight.rooted / team.sight.looks
     else:
-        wanted = reference(team.schedule, condition["duration"])
+        wanted = reference(team.schedule, team.condition["duration"])
         found["error_m"] = float(np.hypot(*(middle - wanted)))
         pair = final[:2].mean(axis=0)
         found["pair_error_m"] = float(np.hypot(*(pair - wanted)))

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from experiments.consensus.graphs import leader_of
 from experiments.consensus.linear import START
 from experiments.consensus.moving import Path
 from mjmr.plot import figure
@@ -29,7 +30,7 @@ def _done(rows: Table) -> list[Any]:
 
 
 def _followed(rows: Table, path: File) -> File:
-    title = "Followers' distance from their places (solid: robot 1, dashed: robot 2), lines: loop"
+    title = "Followers' distance from their places (solid: first, dashed: second), lines: loop"
     with figure(path, title, "time / s", "distance / m") as axes:
         for k, condition in enumerate(rows.conditions):
             row = next((r for r in _done(rows) if r.condition == condition), None)
@@ -37,14 +38,16 @@ def _followed(rows: Table, path: File) -> File:
                 continue
             y = np.array([float(v) for v in row.metrics["outputs"].split()]).reshape(-1, 3, 2)
             c: Mapping[str, Any] = row.condition
-            way = Path(c["path"], START[0], c["speed"], c["turn_rate"], np.zeros((3, 2)))
+            leader = leader_of(c["schedule"])
+            way = Path(c["path"], START[leader], c["speed"], c["turn_rate"], np.zeros((3, 2)))
             at = np.array([way.point(float(t))[0] for t in range(len(y))])
             away = np.linalg.norm(y - at[:, None], axis=2)
             known = "told" if condition["feedforward"] == "told" else "law alone"
             label = f"{condition['path']}, {known}"
-            for i, style in ((1, "-"), (2, "--")):
+            followers = [i for i in range(3) if i != leader]
+            for i, style in zip(followers, ("-", "--"), strict=True):
                 axes.plot(np.maximum(away[:, i], 1e-3), style, color=f"C{k}",
-                          label=label if i == 1 else None)  # fmt: skip
+                          label=label if style == "-" else None)  # fmt: skip
                 expected = row.metrics[f"theory_{i + 1}_m"]
                 if condition["feedforward"] == "none" and condition["path"] in ("line", "circle"):
                     axes.axhline(expected, color=f"C{k}", linewidth=0.5)

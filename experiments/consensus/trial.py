@@ -4,22 +4,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from experiments.consensus import linear
+from experiments.consensus.refusals import refuse
 from experiments.consensus.roles import PUBLISHED
-from mjmr.errors import InvalidInputError
 from mjmr.randomness import Streams
 
 Metrics = dict[str, float | int | str | bool | None]
-MODES = {
-    "three": ("linear", "physical"),
-    "graph": ("linear", "physical"),
-    "agreement": ("physical",),
-    "moving": ("physical",),
-    "average": ("physical",),
-    "example-4.1": ("linear",),
-    "random-sequence": ("linear",),
-    "mixed-channels": ("linear",),
-    "lemmas": ("linear",),
-}
 
 
 def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PUBLISHED) -> Metrics:
@@ -31,22 +20,17 @@ def trial(condition: Mapping[str, Any], seed: int, parts: Mapping[str, Any] = PU
         parts: Classes of the roles ``gains`` and ``law``.
 
     Raises:
-        InvalidInputError: The mode has no such experiment, parameters that do not go together,
-            or graphs that never meet the structure condition and nobody asked for them.
+        InvalidInputError: The mode has no such experiment, parameters that do not go together or
+            are not read, or graphs that never meet the structure condition and nobody asked for
+            them.
     """
-    _check_mode(condition)
+    refuse(condition)
     if condition["mode"] == "linear":
         return linear.trial(condition, seed, parts)
     # MuJoCo, OpenCV and OSQP are loaded by the trials that use them
-    from experiments.consensus import agreement, average, moving, physical
+    from experiments.consensus.teams import measure, team_of
 
-    if condition["experiment"] == "agreement":
-        return agreement.trial(condition, seed, parts)
-    if condition["experiment"] == "moving":
-        return moving.trial(condition, seed, parts)
-    if condition["experiment"] == "average":
-        return average.trial(condition, seed)
-    return physical.trial(condition, seed, parts)
+    return measure(team_of(condition, seed, parts))
 
 
 def world(condition: Mapping[str, Any]) -> Any:
@@ -57,30 +41,24 @@ def world(condition: Mapping[str, Any]) -> Any:
     Raises:
         InvalidInputError: As :func:`trial`; ``mjmr trial`` asks here whether a condition can be.
     """
-    from experiments.consensus import physical, study
+    from experiments.consensus import study
+    from experiments.consensus.teams import team_of
 
-    _check_mode(condition)
+    refuse(condition)
     if condition["mode"] == "linear":
         if condition["experiment"] == "three":
             linear.planned(condition, Streams(0))
         kept = {name: condition[name] for name in ("experiment", "robots", "graph")}
         kept["experiment"] = "graph" if kept["experiment"] == "graph" else "three"
         condition = study.condition(**kept, mode="physical")
-    return physical.Team(condition, 0).simulation.world
-
-
-def _check_mode(condition: Mapping[str, Any]) -> None:
-    experiment, mode = condition["experiment"], condition["mode"]
-    if mode not in MODES[experiment]:
-        raise InvalidInputError(
-            f"experiment {experiment} is of mode {' or '.join(MODES[experiment])}; got {mode}"
-        )
+    return team_of(condition, 0).simulation.world
 
 
 def prepare() -> None:
     """Compile what trials call, by a short one."""
-    from experiments.consensus import physical, study
+    from experiments.consensus import study
+    from experiments.consensus.teams import team_of
 
     for sight in ("given", "rays"):
         condition = study.condition(mode="physical", sight=sight, duration=0.2)
-        physical.Team(condition, 1000).run(0.2)
+        team_of(condition, 1000).run(0.2)

@@ -71,8 +71,3 @@ class FourWheeler(Unicycle):
         from mjmr.sensors.encoders import WheelEncoders
 
         return {"encoders": WheelEncoders(rate=50.0, counts_per_turn=10000.0)}
-
-    @property
-    def always_allowed(self) -> float:
-        """A command none of whose entries is above this needs no clamping."""
-        return min(self.max_twist)

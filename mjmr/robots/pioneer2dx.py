@@ -49,8 +49,3 @@ class Pioneer2DX(Unicycle):
         from mjmr.sensors.encoders import WheelEncoders
 
         return {"encoders": WheelEncoders(rate=10.0)}
-
-    @property
-    def always_allowed(self) -> float:
-        """A command none of whose entries is above this needs no clamping."""
-        return min(self.max_twist)

@@ -52,8 +52,3 @@ class RoundPusher(Unicycle):
         from mjmr.sensors.turret import Turret
 
         return {"encoders": WheelEncoders(rate=10.0), "turret": Turret()}
-
-    @property
-    def always_allowed(self) -> float:
-        """A command none of whose entries is above this needs no clamping."""
-        return min(self.max_twist)

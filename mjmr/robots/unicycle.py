@@ -1,7 +1,6 @@
 """What two-sided platforms share: commands are (forward, turn), whatever the wheels under them."""
 
 import math
-from abc import abstractmethod
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -62,9 +61,9 @@ class Unicycle(Platform):
         return marked_model(self.name, number, team, disc=self.disc_radius, digit=0.05)
 
     @property
-    @abstractmethod
     def always_allowed(self) -> float:
         """A command none of whose entries is above this needs no clamping."""
+        return min(self.max_twist)
 
     def clamp(self, command: Array) -> Array:
         """Cut forward and turn of commands (n, 2) to ``max_twist``, each by itself."""

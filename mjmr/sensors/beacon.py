@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError
+from mjmr.finite import finite
 from mjmr.geometry import wrap_angle
 from mjmr.randomness import SampleNoise
 from mjmr.sensors.base import Sensor, check_errors
@@ -48,9 +49,10 @@ class Beacon(Sensor):
         """
         super().__init__(rate=rate, latency=latency, phase=phase)
         check_errors(bearing_noise=bearing_noise, distance_noise=distance_noise)
-        self.position = np.array(position, dtype=np.float64)
-        if self.position.shape != (2,) or not np.isfinite(self.position).all():
+        place = finite(position, (2,))
+        if place is None:
             raise InvalidInputError(f"a beacon's position is two finite numbers; got {position}")
+        self.position = place
         self.bearing_noise = float(bearing_noise)
         self.distance_noise = float(distance_noise)
 

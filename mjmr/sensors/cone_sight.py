@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError
+from mjmr.finite import finite
 from mjmr.sensors.base import Sensor
 
 Array = NDArray[np.float64]
@@ -58,10 +59,13 @@ class ConeSight(Sensor):
         if not range > 0:
             raise InvalidInputError(f"a range is positive; got {range} m")
         self.cone, self.range = float(cone), float(range)
-        self._eye, self._mark = np.array(eye, dtype=float), np.array(mark, dtype=float)
-        for name, point in (("eye", self._eye), ("mark", self._mark)):
-            if point.shape != (3,) or not np.isfinite(point).all():
-                raise InvalidInputError(f"{name} is a point (3,) [m]; got {point}")
+        points = []
+        for name, given in (("eye", eye), ("mark", mark)):
+            point = finite(given, (3,))
+            if point is None:
+                raise InvalidInputError(f"{name} is a point (3,) [m]; got {given}")
+            points.append(point)
+        self._eye, self._mark = points
 
     def read(self) -> Array:
         """Newest look (n, n, 2): distance [m] and bearing [rad] of each other robot's mark.

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError, UnknownNameError
+from mjmr.finite import finite
 from mjmr.sensors.base import Sensor, carrier_body, physics_of
 
 if TYPE_CHECKING:
@@ -28,8 +29,8 @@ class SiteSensor(Sensor):
 
     def _place(self, site: str, body: str, position: ArrayLike) -> None:
         """Say where: a site of the robot's model, or a place on one of its bodies."""
-        where = np.array(position, dtype=np.float64)
-        if where.shape != (3,) or not np.isfinite(where).all():
+        where = finite(position, (3,))
+        if where is None:
             raise InvalidInputError(f"a {self.name}'s position has three finite numbers")
         if site and (body or where.any()):
             raise InvalidInputError(

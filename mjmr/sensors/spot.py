@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from mjmr.errors import InvalidInputError
+from mjmr.finite import finite
 from mjmr.geometry import look_at
 from mjmr.randomness import SampleNoise
 from mjmr.sensors.base import Sensor
@@ -61,8 +62,8 @@ class Spot(Sensor):
                 range that cannot be.
         """
         super().__init__(rate=rate, latency=latency, phase=phase)
-        ends = np.array([position, target], dtype=np.float64)
-        if ends.shape != (2, 3) or not np.isfinite(ends).all() or (ends[0] == ends[1]).all():
+        ends = finite([position, target], (2, 3))
+        if ends is None or (ends[0] == ends[1]).all():
             raise InvalidInputError("a spot's position and target are two points of three numbers")
         if kind not in KINDS:
             raise InvalidInputError(f"a spot's kind is one of {', '.join(KINDS)}; got {kind!r}")

@@ -15,7 +15,7 @@ from experiments.consensus.linear import START, Runner, degrees_of, reference
 from experiments.consensus.linear import run as follow
 from experiments.consensus.physical import Team
 from experiments.consensus.plots import series
-from experiments.consensus.refusals import refuse_unfit
+from experiments.consensus.refusals import READS, refuse
 from experiments.consensus.trial import trial, world
 from mjmr.claims import judge
 from mjmr.errors import InvalidInputError, TruthError
@@ -118,7 +118,7 @@ def test_degrees_below_one_or_of_the_wrong_number_are_refused():
         ({"degrees": "1 2 3"}, "degrees and weight_y are of mode=linear; got degrees='1 2 3'"),
         ({"weight_y": 0.5}, "weight_y=0.5"),
         ({"sight": "rays", "loss": 0.5, "delay": 0.1}, "loss, delay are of what.*sight=rays"),
-        ({"experiment": "agreement", "noise": 0.05}, "noise are of what.*sight=rays"),
+        ({"experiment": "agreement", "noise": 0.05}, "agreement does not read noise: leave it at"),
         ({"side": 0.0}, "side=0 needs virtual=true"),
         ({"sight": "rays", "scan": True, "avoid": "barrier"}, "scan=true.*avoid=none is allowed"),
     ],
@@ -131,8 +131,43 @@ def test_what_does_not_go_together_is_refused_in_a_sentence(given, told):
 def test_no_size_runs_what_is_refused():
     for size in ("quick", "standard", "full"):
         for condition, _ in study.trials(size):
-            if condition["mode"] == "physical":
-                refuse_unfit(condition)
+            refuse(condition)
+
+
+@pytest.mark.parametrize(("experiment", "mode"), READS)
+def test_parameters_an_experiment_does_not_read_are_refused_by_name(experiment, mode):
+    """Each but those of which a sentence of its own is told."""
+    fit = {"experiment": experiment, "mode": mode}
+    fit |= {"schedule": "case-i", "duration": 70.0} if experiment == "moving" else {}
+    refuse(study.condition(**fit))
+    for parameter in study.parameters:
+        if parameter.name in {*READS[experiment, mode], *fit, "sight", "degrees", "weight_y"}:
+            continue
+        usual = parameter.default
+        if parameter.values:
+            other = next(c for c in parameter.values if c != usual)
+        else:
+            other = not usual if isinstance(usual, bool) else usual + 1
+            other = 0.5 if parameter.most == 1.0 else other
+        told = f"experiment={experiment}.* does not read {parameter.name}: leave it at .*; got"
+        with pytest.raises(InvalidInputError, match=told):
+            refuse(study.condition(**fit, **{parameter.name: other}))
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"sight": "rays", "schedule": "star"}, "sight=rays does not read schedule"),
+        ({"scan": True}, "sight=given does not read scan: leave it at false; got scan=true"),
+        ({"experiment": "moving", "schedule": "star", "path": "scale", "speed": 0.3},
+         r"path=scale does not read speed: leave it at 0\.2; got speed=0\.3"),
+        ({"mode": "linear", "degrees": "3", "experiment": "graph"},
+         "experiment=graph with mode=linear does not read degrees: leave it at 2; got degrees=3"),
+    ],
+)  # fmt: skip
+def test_what_another_parameter_makes_idle_is_refused(given, told):
+    with pytest.raises(InvalidInputError, match=told):
+        run(**{"mode": "physical", **given})
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -263,6 +298,8 @@ def test_cameras_and_rays_tell_the_same():
         ({"schedule": "isolated"}, "never meet Assumption 4.2"),
         ({"degrees": "0"}, "1 or more"),
         ({"experiment": "lemmas", "mode": "physical"}, "of mode linear"),
+        ({"experiment": "average", "mode": "physical", "noise": 0.1}, "does not read noise"),
+        ({"path": "circle"}, "experiment=three with mode=linear does not read path: leave it at"),
     ],
 )
 def test_what_cannot_be_run_is_bad_input_and_not_a_failed_trial(given, why, capsys):

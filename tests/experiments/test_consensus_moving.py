@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from experiments.consensus import study
+from experiments.consensus import study, teams
 from experiments.consensus.average import Patrol
 from experiments.consensus.claims import claims
-from experiments.consensus.moving import PATHS, MovingTeam, Path
+from experiments.consensus.moving import PATHS, MovingTeam, Path, measure
 from experiments.consensus.plots import plots
-from experiments.consensus.trial import trial
+from experiments.consensus.trial import trial, world
 from mjmr.claims import judge
 from mjmr.errors import InvalidInputError, TruthError
 from mjmr.table import Row, Table
@@ -99,6 +99,7 @@ def test_robots_that_patrol_meet_others_and_touch_nobody():
         ({**MOVING, "schedule": "alternate"}, "schedule=case-i, case-ii, star are allowed; got"),
         ({**MOVING, "sight": "rays"}, "led by one robot.*got sight=rays"),
         ({**MOVING, "duration": 15.0}, r"last turn, 15\.71 s at turn_rate=0\.4; got duration=15"),
+        ({**MOVING, "speed": 0.9}, r"speed is at most 0\.8 m/s; got 0\.9"),
         ({**AVERAGE, "delay": 0.2}, r"within a round of 0\.1 s; got delay=0\.2"),
         ({**AVERAGE, "mode": "linear"}, "experiment average is of mode physical; got linear"),
     ],
@@ -106,6 +107,50 @@ def test_robots_that_patrol_meet_others_and_touch_nobody():
 def test_what_does_not_go_together_is_refused_in_a_sentence(given, told):
     with pytest.raises(InvalidInputError, match=told):
         run(given)
+
+
+@pytest.mark.parametrize("path", PATHS)
+def test_who_hears_no_leader_is_told_before_anything_moves(path):
+    given = {**MOVING, "weight": 0.0, "anyway": True, "path": path, "duration": 1e6}
+    with pytest.raises(InvalidInputError, match="robot 1 does not hear robot 0"):
+        world(study.condition(**given))
+
+
+@pytest.mark.parametrize(
+    ("given", "size"),
+    [
+        ({"experiment": "three"}, (12.0, 11.5)),
+        ({"experiment": "graph", "robots": 5}, (9.6, 9.6)),
+        ({**MOVING, "speed": 0.7, "path": "circle"}, None),
+        ({**AVERAGE, "patrol": False}, (10.0, 11.2)),
+    ],
+    ids=lambda v: v.get("experiment") if isinstance(v, dict) else None,
+)
+def test_the_world_that_is_shown_is_the_one_that_is_run(given, size, monkeypatch):
+    condition, ran = study.condition(**{"mode": "physical", "duration": 0.1, **given}), []
+    monkeypatch.setattr(teams, "measure", lambda team: ran.append(team) or {})
+    trial(condition, 0)
+    shown, (team,) = world(condition), ran
+    assert shown.to_xml() == team.simulation.world.to_xml()
+    low_x, low_y, high_x, high_y = shown.bounds
+    if size is None:  # the leader's circle of 3.5 m fits in
+        assert high_y - low_y > 7.0
+    else:
+        assert (high_x - low_x, high_y - low_y) == pytest.approx(size)
+    count = condition["robots"] if given["experiment"] in ("graph", "average") else 3
+    assert f"rover{count - 1}/" in shown.to_xml()
+    assert f"rover{count}/" not in shown.to_xml()
+
+
+def test_walls_that_are_touched_count_in_formations_that_move():
+    class Tight(MovingTeam):
+        def _places(self, condition, streams):
+            start, offsets, (x0, y0, _, y1) = super()._places(condition, streams)
+            return start, offsets, (x0, y0, (start + offsets)[:, 0].max() + 0.6, y1)
+
+    short = {**MOVING, "turn_rate": 0.9, "duration": 7.0, "speed": 0.7}
+    assert run(short)["wall_contact_seconds"] == 0.0
+    assert measure(Tight(study.condition(**short), 1000))["wall_contact_seconds"] > 1.0
 
 
 @pytest.mark.parametrize(
@@ -129,6 +174,21 @@ def test_one_bad_run_fails_a_claim(name, given, good, bad):
 
     assert verdict(good, good, good) == "holds"
     assert verdict(good, bad, good) == "fails"
+
+
+def test_followers_are_drawn_from_where_their_own_leader_goes(tmp_path, monkeypatch):
+    """Outputs that stand on the path of robot 2, who leads, are nowhere away from it."""
+    condition = study.condition(**{**MOVING, "schedule": "case-ii", "weight": 0.2})
+    at = [[2.0 + 0.2 * t, 5.0] for t in range(4)]
+    words = " ".join(f"{v:.3f}" for v in np.repeat(at, 3, axis=0).ravel())
+    metrics = {"outputs": words, **{f"theory_{i}_m": 1.0 for i in (1, 2, 3)}}
+    drawn = []
+    monkeypatch.setattr(
+        "matplotlib.axes.Axes.plot", lambda axes, y, *a, **k: drawn.append((y, k["label"]))
+    )
+    plots(Table([Row(condition, 0, "ok", metrics)], study.parameters), tmp_path)
+    assert [np.max(y) for y, _ in drawn] == [1e-3, 1e-3]
+    assert [label for _, label in drawn] == ["line, law alone", None]
 
 
 def test_plots_show_what_ran(tmp_path):

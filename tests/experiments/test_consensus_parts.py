@@ -51,6 +51,34 @@ def test_another_law_moves_bodies():
     assert same == published
 
 
+@pytest.mark.parametrize(
+    ("given", "metric"),
+    [
+        ({"experiment": "moving", "schedule": "star", "side": 4.0, "turn_rate": 0.9,
+          "duration": 7.0}, "formation_rms_m"),
+        ({"experiment": "agreement", "duration": 0.5}, "distance_rms"),
+        ({"experiment": "graph", "robots": 4, "duration": 1.0}, "spread_m"),
+    ],
+)  # fmt: skip
+def test_another_law_reaches_every_experiment_with_bodies(given, metric):
+    """Of average, whose robots' ways are not told, the next test."""
+    condition = study.condition(mode="physical", **given)
+    published = study.bound_trial()(condition, 1000)
+    assert run("law", "stiff.py:Stiff", STIFF, **condition)[metric] != published[metric]
+    same = run("law", "controllers.consensus:RelativeForm", **condition)
+    assert same == published
+
+
+def test_another_law_drives_robots_that_tell_averages():
+    """One that drives them outwards: out of the radio's reach."""
+    away = STIFF.replace("2 * np", "-40 * np")
+    given = {"mode": "physical", "experiment": "average", "robots": 3, "duration": 4.0}
+    published = study.bound_trial()(study.condition(**given), 1000)
+    assert run("law", "stiff.py:Stiff", away, **given)["links"] != published["links"]
+    same = run("law", "controllers.consensus:RelativeForm", **given)
+    assert same == published
+
+
 def test_rules_of_the_package_take_the_role_of_a_crowd_too():
     crowd = {"experiment": "graph", "robots": 12, "graph": "star", "duration": 2000.0}
     alike = study.bound_trial()(study.condition(**crowd), 1000)

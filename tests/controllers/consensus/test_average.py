@@ -66,6 +66,54 @@ def test_a_ratio_takes_what_it_missed_when_a_link_comes_back():
     )
 
 
+def carried(service):
+    """Value and weight of all: in robots, on their way, and still to be taken from them."""
+    way = service._given - service._taken.swapaxes(0, 1)
+    return (service._mass + service._owed).sum(axis=0) + way.sum(axis=(0, 1))
+
+
+def disorderly(service, rounds, seed, each=lambda: None):
+    """Messages are lost, late by up to four rounds, heard again, and out of order."""
+    rng, n, told = np.random.default_rng(seed), len(VALUES), []
+    for _ in range(rounds):
+        told.append(service.message())
+        age = np.minimum(rng.integers(0, 5, (n, n)), len(told) - 1)
+        words = np.array(told)[len(told) - 1 - age, np.arange(n)]
+        heard = RING & (rng.uniform(size=(n, n)) >= 0.3)
+        service.hear(np.where(heard[..., None], words, np.nan))
+        each()
+    return service
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_ratio_keeps_value_and_weight_when_messages_come_late_twice_and_out_of_order(seed):
+    service = RatioConsensus(VALUES)
+
+    def look():
+        assert carried(service) == pytest.approx([VALUES.sum(), 5.0], abs=1e-9)
+        # what is a mean of the readings with weights that are not negative stays among them
+        assert VALUES.min() - 1e-9 <= service.estimate.min()
+        assert service.estimate.max() <= VALUES.max() + 1e-9
+
+    disorderly(service, 300, seed, look)
+    assert service.estimate == pytest.approx(np.full(5, VALUES.mean()), abs=1e-6)
+
+
+def test_weights_that_shrink_leave_no_robot_without_an_estimate():
+    service = talk(RatioConsensus(VALUES, [0.0, 8.0, 0.0, 1.0, 0.0]), 100)
+    service.replace(VALUES, [1.0, 0.0, 0.0, 1.0, 0.0])
+
+    def look():
+        assert np.isfinite(service.estimate).all()
+        assert (service._mass[:, 1] > 0).all()
+        assert carried(service) == pytest.approx([VALUES[0] + VALUES[3], 2.0], abs=1e-9)
+
+    look()
+    disorderly(service, 600, 3, look)
+    mean = (VALUES[0] + VALUES[3]) / 2
+    assert service.estimate == pytest.approx(np.full(5, mean), abs=1e-6)
+
+
 def test_weights_count_and_numbers_may_change():
     weights = np.array([0.0, 2.0, 0.0, 1.0, 0.0])
     service = RatioConsensus(VALUES, weights)

@@ -102,3 +102,45 @@ def test_who_does_not_hear_the_leader_is_named():
         ramp_lag(neighbour_gains(CHAIN, 0.2), 3, [0.2])
     with pytest.raises(InvalidInputError, match="above 0; got 0"):
         harmonic_error(neighbour_gains(CHAIN, 0.2), 0, 0.0, [1.0], np.zeros((3, 1)))
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"velocity": 0.2}, "a velocity is finite numbers"),
+        ({"velocity": ["a"]}, "a velocity is finite numbers .* got .'a'"),
+        ({"velocity": [np.nan, 0.0]}, "a velocity is finite numbers"),
+        ({"leader": 0.0}, r"one of 0 to 2; got 0\.0"),
+        ({"delay": -1.0}, r"0 or more and finite; got -1\.0 s"),
+        ({"delay": np.inf}, "0 or more and finite; got inf s"),
+        ({"delay": "late"}, "0 or more and finite; got late s"),
+        ({"gains": [["a"]]}, "gains are numbers"),
+    ],
+)
+def test_lags_of_what_cannot_be_are_told_in_a_sentence(given, told):
+    fit = {"gains": neighbour_gains(CHAIN, 0.2), "leader": 0, "velocity": [0.2, 0.0]}
+    ramp_lag(**fit)
+    with pytest.raises(InvalidInputError, match=told):
+        ramp_lag(**{**fit, **given})
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"rate": "fast"}, "above 0; got fast"),
+        ({"rate": np.inf}, "above 0; got inf"),
+        ({"path": 1.0}, "amplitudes of a path are finite numbers"),
+        ({"path": [np.nan, 0.0]}, "amplitudes of a path are finite numbers"),
+        ({"offsets": np.zeros((4, 2))}, r"of shape \(3, 2\) .m.; got shape \(4, 2\)"),
+        ({"offsets": np.zeros((3, 1))}, r"of shape \(3, 2\) .m.; got shape \(3, 1\)"),
+        ({"offsets": "none"}, "got no numbers"),
+        ({"leader": 0.0}, r"one of 0 to 2; got 0\.0"),
+        ({"delay": -1.0}, r"0 or more and finite; got -1\.0 s"),
+    ],
+)
+def test_swings_of_what_cannot_be_are_told_in_a_sentence(given, told):
+    fit = {"gains": neighbour_gains(CHAIN, 0.2), "leader": 0, "rate": 0.3, "path": [1.0, 1j],
+           "offsets": np.zeros((3, 2))}  # fmt: skip
+    harmonic_error(**fit)
+    with pytest.raises(InvalidInputError, match=told):
+        harmonic_error(**{**fit, **given})
