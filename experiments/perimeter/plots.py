@@ -99,9 +99,7 @@ def _counts(rows: Table, folder: Path) -> Path:
         found: dict[int, Any] = {int(n): part for n, part in rows.split("robots")}
         order = sorted(found)
         times = [statistics.mean(found[n].values("stopped_at_s")) for n in order]
-        interval_line(
-            axes, order, times, "mean; two never do: no chord is longer than the diameter"
-        )
+        interval_line(axes, order, times, "mean; two stand unevenly: no chord exceeds the diameter")
         axes.axhline(LONG, color="0.6", linewidth=1, label="end of the runs")
         axes.legend()
     return path
